@@ -38,6 +38,9 @@ struct PunctualSample {
   float distance = 0.0F;  // infinity for parallel light
   Rgb irradiance{0.0F};   // on a plane that faces the light
 };
+/// Irradiance I / d^2, times the squared ramp of KHR_lights_punctual for a spot light:
+///   clamp((cos(angle) - cos(outer)) / max(0.001, cos(inner) - cos(outer)), 0, 1)^2
+/// At the light's own position the direction is undefined (NaN) and the irradiance infinite.
 [[nodiscard]] PunctualSample incident_from(const PunctualLight& light, Vec3 point);
 
 }  // namespace plumbline::light
