@@ -160,9 +160,7 @@ CubeCoordinate cube_from_direction(const Vec3& direction) {
 Vec3 direction_from_cube(const CubeCoordinate& coordinate) {
   const double s = 2.0 * static_cast<double>(coordinate.uv.x) - 1.0;
   const double t = 2.0 * static_cast<double>(coordinate.uv.y) - 1.0;
-  const std::array<Vec3d, 6> faces{Vec3d(1.0, -t, -s), Vec3d(-1.0, -t, s), Vec3d(s, 1.0, t),
-                                   Vec3d(s, -1.0, -t), Vec3d(s, -t, 1.0),  Vec3d(-s, -t, -1.0)};
-  return Vec3(glm::normalize(faces.at(static_cast<std::size_t>(coordinate.face))));
+  return Vec3(glm::normalize(cube_face_point(coordinate.face, s, t)));
 }
 
 Environment rotated(Environment environment, Vec3 degrees_xyz) {

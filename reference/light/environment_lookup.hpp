@@ -28,6 +28,13 @@ struct Texel {
   return {texel_index(uv.x, width), texel_index(uv.y, height)};
 }
 
+/// The point (s, t), from the top left in [-1, 1], of a cube face at distance 1; faces +X -X +Y -Y +Z -Z.
+[[nodiscard]] inline Vec3d cube_face_point(int face, double s, double t) {
+  const std::array<Vec3d, 6> points{Vec3d(1.0, -t, -s), Vec3d(-1.0, -t, s), Vec3d(s, 1.0, t),
+                                    Vec3d(s, -1.0, -t), Vec3d(s, -t, 1.0),  Vec3d(-s, -t, -1.0)};
+  return points.at(static_cast<std::size_t>(face));
+}
+
 /// Is the direction (in the frame of the environment) inside the disc? Compares chords: the angle between two
 /// nearly parallel float vectors is lost in their dot product (half a per cent of the sun's solid angle), but
 /// not in the length of their difference.
