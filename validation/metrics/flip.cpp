@@ -47,6 +47,14 @@ Plane make_plane(int width, int height) {
           std::vector<float>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
 }
 
+// Calls body(y) for every row. Starting threads costs more than it saves on small images.
+template <typename Body>
+void for_each_row(const Plane& plane, const Body& body) {
+  constexpr std::size_t kFewPixels = 1 << 16;
+  const int threads = plane.values.size() < kFewPixels ? 1 : 0;
+  parallel_for(static_cast<std::size_t>(plane.height), threads, body);
+}
+
 using Kernel = std::vector<double>;  // 2 radius + 1 weights, the centre in the middle
 
 int radius_of(const Kernel& kernel) {
@@ -78,7 +86,7 @@ Kernel normalised(Kernel kernel) {
 Plane filter_rows(const Plane& plane, const Kernel& kernel) {
   Plane result = make_plane(plane.width, plane.height);
   const int radius = radius_of(kernel);
-  parallel_for(static_cast<std::size_t>(plane.height), 0, [&](std::size_t y) {
+  for_each_row(plane, [&](std::size_t y) {
     const std::size_t start = plane.row(static_cast<int>(y));
     std::vector<double> padded;
     for (int x = -radius; x < plane.width + radius; ++x) {
@@ -96,7 +104,7 @@ Plane filter_rows(const Plane& plane, const Kernel& kernel) {
 Plane filter_columns(const Plane& plane, const Kernel& kernel) {
   Plane result = make_plane(plane.width, plane.height);
   const int radius = radius_of(kernel);
-  parallel_for(static_cast<std::size_t>(plane.height), 0, [&](std::size_t y) {
+  for_each_row(plane, [&](std::size_t y) {
     const auto width = static_cast<std::size_t>(plane.width);
     std::vector<double> row(width, 0.0);
     for (std::size_t tap = 0; tap < kernel.size(); ++tap) {
