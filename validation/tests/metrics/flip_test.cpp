@@ -249,8 +249,12 @@ TEST(Flip, MatchesDirectTwoDimensionalFilters) {
     }
   }
   const Image step = step_image(26, 21, {0.1F, 0.6F, 0.2F}, {0.9F, 0.3F, 0.7F});
+  // Channels blur by different widths: next to this edge the blurred colours leave the RGB cube and are
+  // clamped.
+  const Image saturated = step_image(26, 21, {0.0F, 0.0F, 1.0F}, {1.0F, 1.0F, 0.0F});
   using Pair = std::pair<const Image*, const Image*>;
-  for (const auto& [a, b] : {Pair{&noise, &smooth}, Pair{&step, &smooth}, Pair{&noise, &step}}) {
+  for (const auto& [a, b] :
+       {Pair{&noise, &smooth}, Pair{&step, &smooth}, Pair{&noise, &step}, Pair{&saturated, &smooth}}) {
     const std::vector<float> fast = flip(*a, *b, kPixelsPerDegree);
     for (const auto& [x, y] :
          {std::pair{0, 0}, {25, 20}, {12, 10}, {13, 10}, {1, 19}, {20, 3}, {7, 14}, {25, 0}}) {
