@@ -13,6 +13,9 @@ namespace plumbline::sh {
 /// Largest number of bands the library takes. n bands are degrees l = 0 … n-1 (Sloan's "order n").
 inline constexpr int kMaxBands = 1000;
 
+/// Up to here float recurrences are exact enough and far from overflow (they grow as 1.618^l at the poles).
+inline constexpr int kFloatBands = 64;
+
 /// n bands hold n^2 coefficients.
 [[nodiscard]] constexpr int coefficient_count(int bands) {
   return bands * bands;
@@ -26,24 +29,38 @@ inline constexpr int kMaxBands = 1000;
 void require_bands(int bands);
 
 /// Evaluates all functions of `bands` bands at a direction. Make one and use it for many directions.
+///
+/// No trigonometry, no factorials, no division: sin^m(theta) e^(i m phi) is (x + iy)^m, so that m > 0 keeps
+/// its digits at the poles. Cost: 7 flops a coefficient; 5 bands or fewer are straight-line code. Largest
+/// absolute error over uniform directions (ShBasis.* tests hold it against quadruple precision):
+///   double  3e-15, 4e-14, 2e-13 at 6, 20, 64 bands, 1e-12 at 1000;   float  7e-7, 2.5e-6, 1e-5 at 6, 10, 20.
+/// Finite for every unit direction up to kMaxBands: above kFloatBands the float version computes in double.
+/// m = 0 at high degree is as ill conditioned near the poles as z is there: an error of l^2/2 times z's
+/// rounding.
 template <class Real>
 class Basis {
  public:
+  /// @throws InputError unless 1 <= bands <= kMaxBands
   explicit Basis(int bands);
 
   [[nodiscard]] int bands() const { return bands_; }
   [[nodiscard]] int coefficient_count() const { return bands_ * bands_; }
 
-  /// Writes coefficient_count() values; (x, y, z) must be unit length.
+  /// Writes coefficient_count() values, index l(l+1)+m; (x, y, z) must be unit length.
+  /// @throws InputError when `values` is shorter than coefficient_count()
   void evaluate(Real x, Real y, Real z, std::span<Real> values) const;
 
  private:
   int bands_ = 0;
-  std::vector<Real> constants_;
+  std::vector<Real> constants_;         // empty where closed forms serve
+  std::vector<double> wide_constants_;  // float above kFloatBands only
 };
 
 extern template class Basis<float>;
 extern template class Basis<double>;
+
+/// The recurrence itself, without the closed forms for few bands: their oracle in the tests.
+[[nodiscard]] std::vector<double> evaluate_basis_by_recurrence(int bands, const Vec3d& direction);
 
 /// One direction, in double: for tests and for places where speed does not matter.
 [[nodiscard]] std::vector<double> evaluate_basis(int bands, const Vec3d& direction);
