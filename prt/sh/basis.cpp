@@ -13,69 +13,71 @@ namespace {
 
 // Real spherical harmonics as columns of constant m:
 //
-//   y_lm = q_l^m(z) Re (-x - iy)^m,   y_l,-m = q_l^m(z) Im (-x - iy)^m,   m >= 0,
+//   y_lm = q_l^m(z) Re (-x - iy)^m,   y_l,-m = q_l^m(z) Im (-x - iy)^m,   m >= 0.
 //
-// where the minus signs carry the Condon-Shortley phase and q_l^m = sqrt(2) K_lm P_l^m(z) / (1 - z^2)^(m/2)
-// (without the root at m = 0) is a polynomial of degree l - m. From (l - m) P_l^m = (2l - 1) z P_(l-1)^m - (l
-// + m - 1) P_(l-2)^m and K_lm^2 = (2l + 1)/(4 pi) (l - m)!/(l + m)! follows
+// The minus signs carry the Condon-Shortley phase, and q_l^m = sqrt(2) K_lm P_l^m(z) / (1 - z^2)^(m/2)
+// (without the root of 2 at m = 0) is a polynomial of degree l - m. From
+//
+//   (l - m) P_l^m = (2l - 1) z P_(l-1)^m - (l + m - 1) P_(l-2)^m,
+//   K_lm^2 = (2l + 1)/(4 pi) (l - m)!/(l + m)!
+//
+// follows
 //
 //   q_m^m = sqrt((2 - [m = 0]) / (4 pi) * product_(k=1..m) (2k + 1)/(2k))
 //   q_l^m = a_lm z q_(l-1)^m - b_lm q_(l-2)^m
-//   a_lm  = sqrt((4 l^2 - 1) / (l^2 - m^2)),   b_lm = sqrt((2l + 1)/(2l - 3) * ((l - 1)^2 - m^2)/(l^2 -
-//   m^2)).
+//   a_lm^2 = (4 l^2 - 1) / (l^2 - m^2)
+//   b_lm^2 = (2l + 1)/(2l - 3) * ((l - 1)^2 - m^2)/(l^2 - m^2).
 //
 // At m = l - 1, b = 0 and a = sqrt(2l + 1): the first step needs no special case. The largest value is
-// q_l^m(1), about
-// ((1 + sqrt 5)/2)^l at m = l / sqrt 5: 1e209 at l = 1000, so double cannot overflow, and where (x + iy)^m
-// underflows the product is below 1e-99. float would overflow from l = 186 on.
+// q_l^m(1), about ((1 + sqrt 5)/2)^l at m = l / sqrt 5: 1e209 at l = 1000. So double cannot overflow, and
+// where (x + iy)^m underflows the product is below 1e-99. float would overflow from l = 186 on and loses
+// digits long before: here it is a storage type.
 //
 // The loops run over l outside and m inside, so that the inner ones have no dependence and vectorise.
 
 /// Row l holds q_l^l, then a_l0 … a_l,l-1, then b_l0 … b_l,l-1: 2l + 1 numbers, n^2 in all.
-template <class Real>
-std::vector<Real> recurrence_constants(int bands) {
-  std::vector<Real> constants;
+std::vector<double> recurrence_constants(int bands) {
+  std::vector<double> constants;
   constants.reserve(static_cast<std::size_t>(coefficient_count(bands)));
   long double square = 1.0L / (4.0L * std::numbers::pi_v<long double>);  // (q_l^l)^2, without the 2 of m > 0
   for (int l = 0; l < bands; ++l) {
     const auto ll = static_cast<long double>(l);
     if (l > 0) square *= (2.0L * ll + 1.0L) / (2.0L * ll);
-    constants.push_back(static_cast<Real>(std::sqrt(l > 0 ? 2.0L * square : square)));
+    constants.push_back(static_cast<double>(std::sqrt(l > 0 ? 2.0L * square : square)));
     for (int m = 0; m < l; ++m) {
       const long double gap = ll * ll - static_cast<long double>(m) * m;
-      constants.push_back(static_cast<Real>(std::sqrt((4.0L * ll * ll - 1.0L) / gap)));
+      constants.push_back(static_cast<double>(std::sqrt((4.0L * ll * ll - 1.0L) / gap)));
     }
     for (int m = 0; m < l; ++m) {
       const long double mm = static_cast<long double>(m) * m;
       const long double ratio = ((ll - 1.0L) * (ll - 1.0L) - mm) / (ll * ll - mm);
       // At m = l - 1 the ratio is 0 (and at l = 1 the other factor is negative).
       constants.push_back(
-          m == l - 1 ? Real(0)
-                     : static_cast<Real>(std::sqrt((2.0L * ll + 1.0L) / (2.0L * ll - 3.0L) * ratio)));
+          m == l - 1 ? 0.0 : static_cast<double>(std::sqrt((2.0L * ll + 1.0L) / (2.0L * ll - 3.0L) * ratio)));
     }
   }
   return constants;
 }
 
-template <class Compute, class Store>
-void evaluate_rows(int bands, const Compute* constants, Compute x, Compute y, Compute z, Store* values) {
-  std::array<Compute, kMaxBands> row_a;  // q_l^m of even l
-  std::array<Compute, kMaxBands> row_b;  // and of odd l
-  std::array<Compute, kMaxBands> re;     // Re (-x - iy)^m
-  std::array<Compute, kMaxBands> im;
-  re[0] = Compute(1);
-  im[0] = Compute(0);
-  Compute* previous = row_b.data();
-  Compute* current = row_a.data();
+template <class Store>
+void evaluate_rows(int bands, const double* constants, double x, double y, double z, Store* values) {
+  std::array<double, kMaxBands> row_a;  // q_l^m of even l
+  std::array<double, kMaxBands> row_b;  // and of odd l
+  std::array<double, kMaxBands> re;     // Re (-x - iy)^m
+  std::array<double, kMaxBands> im;
+  re[0] = 1.0;
+  im[0] = 0.0;
+  double* previous = row_b.data();
+  double* current = row_a.data();
   current[0] = constants[0];
   values[0] = static_cast<Store>(constants[0]);
   ++constants;
   for (int l = 1; l < bands; ++l) {
     std::swap(previous, current);
     const auto size = static_cast<std::size_t>(l);
-    const Compute* a = constants + 1;
-    const Compute* b = a + l;
-    current[size - 1] = Compute(0);  // q_(l-2)^(l-1)
+    const double* a = constants + 1;
+    const double* b = a + l;
+    current[size - 1] = 0.0;  // q_(l-2)^(l-1)
     for (std::size_t m = 0; m < size; ++m) current[m] = a[m] * z * previous[m] - b[m] * current[m];
     current[size] = constants[0];
     constants = b + l;
@@ -84,10 +86,53 @@ void evaluate_rows(int bands, const Compute* constants, Compute x, Compute y, Co
     im[size] = -x * im[size - 1] - y * re[size - 1];
     Store* centre = values + index(l, 0);
     centre[0] = static_cast<Store>(current[0]);
-    for (int m = 1; m <= l; ++m) centre[m] = static_cast<Store>(current[m] * re[static_cast<std::size_t>(m)]);
-    for (int m = 1; m <= l; ++m)
-      centre[-m] = static_cast<Store>(current[m] * im[static_cast<std::size_t>(m)]);
+    for (int m = 1; m <= l; ++m) centre[m] = static_cast<Store>(current[m] * re.data()[m]);
+    for (int m = 1; m <= l; ++m) centre[-m] = static_cast<Store>(current[m] * im.data()[m]);
   }
+}
+
+// The same recurrence as straight-line code for bands known at compile time, column by column.
+template <int kL, int kM, class Store>
+void store_pair(double q, double re, double im, Store* values) {
+  values[index(kL, kM)] = static_cast<Store>(q * re);
+  if constexpr (kM > 0) values[index(kL, -kM)] = static_cast<Store>(q * im);
+}
+
+template <int kBands, int kM, class Store>
+void evaluate_column(const double* constants, double z, double re, double im, Store* values) {
+  double previous = 0.0;
+  double current = constants[kM * kM];
+  store_pair<kM, kM>(current, re, im, values);
+  const auto step = [&]<int kL>(std::integral_constant<int, kL>) {
+    const double* row = constants + kL * kL + 1;
+    double next = row[kM] * z * current;
+    if constexpr (kL > kM + 1) next -= row[kL + kM] * previous;
+    previous = current;
+    current = next;
+    store_pair<kL, kM>(current, re, im, values);
+  };
+  [&]<int... kStep>(std::integer_sequence<int, kStep...>) {
+    (step(std::integral_constant<int, kM + 1 + kStep>{}), ...);
+  }
+  (std::make_integer_sequence<int, kBands - 1 - kM>{});
+}
+
+template <int kBands, class Store>
+void evaluate_unrolled(const double* constants, double x, double y, double z, Store* values) {
+  double re = 1.0;
+  double im = 0.0;
+  const auto column = [&]<int kM>(std::integral_constant<int, kM>) {
+    if constexpr (kM > 0) {
+      const double next = y * im - x * re;
+      im = -x * im - y * re;
+      re = next;
+    }
+    evaluate_column<kBands, kM>(constants, z, re, im, values);
+  };
+  [&]<int... kM>(std::integer_sequence<int, kM...>) {
+    (column(std::integral_constant<int, kM>{}), ...);
+  }
+  (std::make_integer_sequence<int, kBands>{});
 }
 
 // The polynomials of up to five bands with their constants multiplied out.
@@ -177,12 +222,7 @@ void require_bands(int bands) {
 template <class Real>
 Basis<Real>::Basis(int bands) : bands_(bands) {
   require_bands(bands);
-  if (bands <= kClosedBands) return;
-  if (std::is_same_v<Real, float> && bands > kFloatBands) {
-    wide_constants_ = recurrence_constants<double>(bands);
-  } else {
-    constants_ = recurrence_constants<Real>(bands);
-  }
+  if (bands > kClosedBands) constants_ = recurrence_constants(bands);
 }
 
 template <class Real>
@@ -191,6 +231,7 @@ void Basis<Real>::evaluate(Real x, Real y, Real z, std::span<Real> values) const
     refuse_short_values(values.size(), bands_);
   }
   Real* out = values.data();
+  const double* constants = constants_.data();
   switch (bands_) {
     case 1:
       return evaluate_closed<1>(x, y, z, out);
@@ -202,13 +243,18 @@ void Basis<Real>::evaluate(Real x, Real y, Real z, std::span<Real> values) const
       return evaluate_closed<4>(x, y, z, out);
     case 5:
       return evaluate_closed<5>(x, y, z, out);
+    case 6:
+      return evaluate_unrolled<6, Real>(constants, x, y, z, out);
+    case 7:
+      return evaluate_unrolled<7, Real>(constants, x, y, z, out);
+    case 8:
+      return evaluate_unrolled<8, Real>(constants, x, y, z, out);
+    case 9:
+      return evaluate_unrolled<9, Real>(constants, x, y, z, out);
+    case 10:
+      return evaluate_unrolled<10, Real>(constants, x, y, z, out);
     default:
-      break;
-  }
-  if (wide_constants_.empty()) {
-    evaluate_rows<Real, Real>(bands_, constants_.data(), x, y, z, out);
-  } else {
-    evaluate_rows<double, Real>(bands_, wide_constants_.data(), x, y, z, out);
+      return evaluate_rows<Real>(bands_, constants, x, y, z, out);
   }
 }
 
@@ -217,9 +263,9 @@ template class Basis<double>;
 
 std::vector<double> evaluate_basis_by_recurrence(int bands, const Vec3d& direction) {
   require_bands(bands);
-  const std::vector<double> constants = recurrence_constants<double>(bands);
+  const std::vector<double> constants = recurrence_constants(bands);
   std::vector<double> values(static_cast<std::size_t>(coefficient_count(bands)));
-  evaluate_rows(bands, constants.data(), direction.x, direction.y, direction.z, values.data());
+  evaluate_rows<double>(bands, constants.data(), direction.x, direction.y, direction.z, values.data());
   return values;
 }
 

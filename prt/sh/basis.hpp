@@ -13,9 +13,6 @@ namespace plumbline::sh {
 /// Largest number of bands the library takes. n bands are degrees l = 0 … n-1 (Sloan's "order n").
 inline constexpr int kMaxBands = 1000;
 
-/// Up to here float recurrences are exact enough and far from overflow (they grow as 1.618^l at the poles).
-inline constexpr int kFloatBands = 64;
-
 /// n bands hold n^2 coefficients.
 [[nodiscard]] constexpr int coefficient_count(int bands) {
   return bands * bands;
@@ -31,12 +28,13 @@ void require_bands(int bands);
 /// Evaluates all functions of `bands` bands at a direction. Make one and use it for many directions.
 ///
 /// No trigonometry, no factorials, no division: sin^m(theta) e^(i m phi) is (x + iy)^m, so that m > 0 keeps
-/// its digits at the poles. Cost: 7 flops a coefficient; 5 bands or fewer are straight-line code. Largest
-/// absolute error over uniform directions (ShBasis.* tests hold it against quadruple precision):
-///   double  3e-15, 4e-14, 2e-13 at 6, 20, 64 bands, 1e-12 at 1000;   float  7e-7, 2.5e-6, 1e-5 at 6, 10, 20.
-/// Finite for every unit direction up to kMaxBands: above kFloatBands the float version computes in double.
-/// m = 0 at high degree is as ill conditioned near the poles as z is there: an error of l^2/2 times z's
-/// rounding.
+/// its digits at the poles. Cost: about 7 flops a coefficient; 10 bands or fewer are straight-line code.
+/// Above 5 bands float computes in double and rounds once, so that its error is that of the rounded
+/// direction. Largest absolute error over uniform directions (ShBasis.* tests hold it against quadruple
+/// precision):
+///   double  3e-15, 4e-14, 2e-13 at 6, 20, 64 bands;   float  7e-7, 2.5e-6, 1e-5 at 6, 10, 20.
+/// Finite for every unit direction up to kMaxBands. m = 0 at high degree is as ill conditioned near the poles
+/// as z is there: an error of l^2/2 times z's rounding.
 template <class Real>
 class Basis {
  public:
@@ -52,14 +50,13 @@ class Basis {
 
  private:
   int bands_ = 0;
-  std::vector<Real> constants_;         // empty where closed forms serve
-  std::vector<double> wide_constants_;  // float above kFloatBands only
+  std::vector<double> constants_;  // empty where closed forms serve
 };
 
 extern template class Basis<float>;
 extern template class Basis<double>;
 
-/// The recurrence itself, without the closed forms for few bands: their oracle in the tests.
+/// The general recurrence, without the straight-line code for few bands: its oracle in the tests.
 [[nodiscard]] std::vector<double> evaluate_basis_by_recurrence(int bands, const Vec3d& direction);
 
 /// One direction, in double: for tests and for places where speed does not matter.
