@@ -40,8 +40,9 @@ struct AnalyticSky {
 
 /// A disc of constant radiance added to the sky: the sun, or a cap of any size up to the whole sphere.
 struct SunDisc {
-  Vec3 direction{0.0F, 1.0F, 0.0F};  // unit, to the centre
-  double half_angle_rad = 0.0;       // in (0, pi]
+  Vec3 direction{0.0F, 1.0F,
+                 0.0F};         // unit, to the centre, in the environment's frame (it turns with the sky)
+  double half_angle_rad = 0.0;  // in (0, pi]
   Rgb radiance{0.0F};
 };
 
@@ -52,6 +53,7 @@ struct Environment {
   Sky sky = ConstantSky{};
   std::vector<SunDisc> suns;
   glm::mat3 rotation{1.0F};         // environment to world: the light arriving from R d is the file's at d
+  std::size_t texels = 0;           // of the image file; 0 for what is built in
   std::size_t negative_texels = 0;  // set to 0 on loading, counted here
 };
 
@@ -59,10 +61,11 @@ struct Environment {
 /// use it. Images are looked up by nearest texel: each texel is a region of constant radiance.
 [[nodiscard]] Rgb radiance(const Environment& environment, const Vec3& direction);
 
-/// True when no direction has any radiance for certain (constant black and no suns).
+/// True when no direction has any radiance for certain (constant black and no suns, or black ones).
 [[nodiscard]] bool is_black(const Environment& environment);
 
-/// Pixel <-> direction, continuous image coordinates in [0, 1]^2 with (0, 0) the top left corner.
+/// Pixel <-> direction, continuous image coordinates in [0, 1]^2 with (0, 0) the top left corner. Good to
+/// 2e-7 of the image's width and height (LatLong.*, AngularMap.*, Cube.* tests).
 [[nodiscard]] Vec2 lat_long_from_direction(const Vec3& direction);
 [[nodiscard]] Vec3 direction_from_lat_long(const Vec2& uv);
 [[nodiscard]] Vec2 angular_map_from_direction(const Vec3& direction);
@@ -75,7 +78,7 @@ struct CubeCoordinate {
 [[nodiscard]] CubeCoordinate cube_from_direction(const Vec3& direction);
 [[nodiscard]] Vec3 direction_from_cube(const CubeCoordinate& coordinate);
 
-/// Turns the environment: about world X by x degrees, then Y, then Z (each right-handed).
+/// Turns the environment (sky and suns): about world X by x degrees, then Y, then Z (each right-handed).
 [[nodiscard]] Environment rotated(Environment environment, Vec3 degrees_xyz);
 
 /// Which arrangement an image file has; `automatic` decides by the aspect ratio: 2:1 lat-long, 1:1 angular
@@ -93,6 +96,7 @@ struct BuiltinEnvironment {
   std::string description;  // one line
 };
 /// white (radiance 1), black, overcast (CIE, zenith 1), two-lobes (the papers' analytic light), sun-sky.
+/// make_builtin_environment throws InputError, listing the names there are, for any other.
 [[nodiscard]] std::vector<BuiltinEnvironment> builtin_environments();
 [[nodiscard]] Environment make_builtin_environment(const std::string& name);
 

@@ -1,0 +1,272 @@
+#include "reference/light/sky_density.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reference/base/error.hpp"
+#include "reference/base/parallel.hpp"
+#include "reference/light/environment_lookup.hpp"
+
+namespace plumbline::light {
+namespace {
+
+using image::Image;
+
+constexpr double kUniformShare = 0.05;  // of a table that is filled from lookups
+constexpr int kAnalyticCells = 256;     // across; half as many down
+constexpr int kLeastCells = 64;
+constexpr int kMostCells = 2048;
+
+double magnitude_of(const Rgb& radiance, const std::string& where) {
+  if (!is_finite(radiance)) {
+    throw InputError(
+        fmt::format("{}: radiance ({}, {}, {}) is not finite", where, radiance.x, radiance.y, radiance.z));
+  }
+  return static_cast<double>(max_magnitude(radiance));
+}
+
+// A point in (0, 1) of a texel that float rounding of the direction cannot carry over the border: coordinates
+// are good to about 1e-7 of the image, and four times that is left free.
+double inside(double offset, int texels) {
+  const double margin = std::min(0.25, static_cast<double>(texels) * 0x1p-21);
+  return margin + (1.0 - 2.0 * margin) * offset;
+}
+
+// Polar angle from +Y by versine = (1 - cos theta) / 2 = sin^2(theta / 2), which is uniform where solid angle
+// is, and precise at both poles.
+Vec3d direction_from(double turns, double versine) {
+  const double phi = 2.0 * kPi * (turns - 0.5);
+  const double sine = 2.0 * std::sqrt(versine * (1.0 - versine));
+  return {sine * std::cos(phi), 1.0 - 2.0 * versine, sine * std::sin(phi)};
+}
+
+// Solid angle of the corner (0 … s, 0 … t) of a cube face at distance 1; s or t may be negative.
+double corner_solid_angle(double s, double t) {
+  return std::atan2(s * t, std::sqrt(1.0 + s * s + t * t));
+}
+double cube_texel_solid_angle(int x, int y, int side) {
+  const double s0 = 2.0 * x / side - 1.0;
+  const double t0 = 2.0 * y / side - 1.0;
+  const double s1 = 2.0 * (x + 1) / side - 1.0;
+  const double t1 = 2.0 * (y + 1) / side - 1.0;
+  return corner_solid_angle(s1, t1) - corner_solid_angle(s0, t1) - corner_solid_angle(s1, t0) +
+         corner_solid_angle(s0, t0);
+}
+
+using Radiance = std::function<Rgb(const Vec3&)>;
+
+// A grid of lookups at cell centres, corners and edge midpoints: 2 width x (2 height + 1), shared by the
+// cells around.
+std::vector<float> lookups(const Radiance& radiance, const std::string& name, int width, int height) {
+  const int across = 2 * width;
+  const int down = 2 * height + 1;
+  std::vector<float> result(static_cast<std::size_t>(across) * static_cast<std::size_t>(down));
+  parallel_for(static_cast<std::size_t>(down), 0, [&](std::size_t row) {
+    const float v = static_cast<float>(row) / static_cast<float>(down - 1);
+    for (int i = 0; i < across; ++i) {
+      const float u = static_cast<float>(i) / static_cast<float>(across);
+      result[row * static_cast<std::size_t>(across) + static_cast<std::size_t>(i)] =
+          static_cast<float>(magnitude_of(radiance(direction_from_lat_long({u, v})), name));
+    }
+  });
+  return result;
+}
+
+// The largest of the nine lookups in and around each cell.
+std::vector<float> cell_peaks(const Radiance& radiance, const std::string& name, int width, int height) {
+  const std::vector<float> values = lookups(radiance, name, width, height);
+  const auto across = static_cast<std::size_t>(2 * width);
+  std::vector<float> peaks(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0.0F);
+  for (std::size_t cell = 0; cell < peaks.size(); ++cell) {
+    const std::size_t column = cell % static_cast<std::size_t>(width);
+    const std::size_t row = cell / static_cast<std::size_t>(width);
+    for (std::size_t j = 2 * row; j <= 2 * row + 2; ++j) {
+      for (std::size_t i = 2 * column; i <= 2 * column + 2; ++i) {
+        peaks[cell] = std::max(peaks[cell], values[j * across + i % across]);
+      }
+    }
+  }
+  return peaks;
+}
+
+// A texel smaller than a cell may slip between the lookups: each texel's centre raises the cell it lies in.
+void raise_by_texels(std::vector<float>& peaks, int width, int height, const Image& map,
+                     const std::string& name) {
+  for (int y = 0; y < map.height; ++y) {
+    for (int x = 0; x < map.width; ++x) {
+      const Vec2 uv((static_cast<float>(x) + 0.5F) / static_cast<float>(map.width),
+                    (static_cast<float>(y) + 0.5F) / static_cast<float>(map.height));
+      if (glm::length(uv - Vec2(0.5F)) > 0.5F) continue;
+      const Vec2 cell_uv = lat_long_from_direction(direction_from_angular_map(uv));
+      const Texel cell = texel_at(cell_uv, width, height);
+      float& peak = peaks[static_cast<std::size_t>(cell.y) * static_cast<std::size_t>(width) +
+                          static_cast<std::size_t>(cell.x)];
+      peak = std::max(peak, static_cast<float>(magnitude_of(map.at(x, y), name)));
+    }
+  }
+}
+
+// p = (1 - share) peak / sum(peak omega) + share / 4 pi: the same constant added to every peak.
+LatLongDensity mixed_with_uniform(const std::vector<float>& peaks, int width, int height) {
+  double total = 0.0;
+  for (int row = 0; row < height; ++row) {
+    const double borders = std::cos(kPi * row / height) - std::cos(kPi * (row + 1) / height);
+    for (int column = 0; column < width; ++column) {
+      total += static_cast<double>(peaks[static_cast<std::size_t>(row * width + column)]) * borders;
+    }
+  }
+  const double mean = total / (2.0 * width);
+  const double base = mean > 0.0 ? mean * kUniformShare / (1.0 - kUniformShare) : 1.0;
+  return {width, height, [&](int row, std::span<double> row_peaks) {
+            const auto first = static_cast<std::size_t>(row) * row_peaks.size();
+            for (std::size_t i = 0; i < row_peaks.size(); ++i) {
+              row_peaks[i] = base + static_cast<double>(peaks[first + i]);
+            }
+          }};
+}
+
+void require_texels(const Image& image, const std::string& name) {
+  const auto texels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  if (image.width > 0 && image.height > 0 && image.pixels.size() == texels) return;
+  throw InputError(fmt::format("{}: an environment of {}x{} texels holds {}", name, image.width, image.height,
+                               image.pixels.size()));
+}
+
+SkyPart part_of(LatLongDensity density) {
+  const double power = density.power();
+  if (power > 0.0) return {std::move(density), power};
+  return {};
+}
+
+SkyPart make_part(const ConstantSky& sky, const std::string& name) {
+  const double magnitude = magnitude_of(sky.radiance, name);
+  if (magnitude > 0.0) return {UniformDensity{}, 4.0 * kPi * magnitude};
+  return {};
+}
+
+SkyPart make_part(const LatLongSky& sky, const std::string& name) {
+  const Image& image = sky.image;
+  require_texels(image, name);
+  return part_of({image.width, image.height, [&](int row, std::span<double> peaks) {
+                    for (int x = 0; x < image.width; ++x) {
+                      peaks[static_cast<std::size_t>(x)] = magnitude_of(image.at(x, row), name);
+                    }
+                  }});
+}
+
+SkyPart make_part(const CubeMapSky& sky, const std::string& name) {
+  const int side = sky.faces[0].width;
+  for (const Image& face : sky.faces) {
+    require_texels(face, name);
+    if (face.width == side && face.height == side) continue;
+    throw InputError(fmt::format("{}: a cube face of {}x{} texels, expected {}x{} as the first", name,
+                                 face.width, face.height, side, side));
+  }
+  for (const Image& face : sky.faces) {
+    for (const Rgb& texel : face.pixels) (void)magnitude_of(texel, name);
+  }
+  CubeDensity density(sky);
+  const double power = density.power();
+  if (power > 0.0) return {std::move(density), power};
+  return {};
+}
+
+SkyPart make_part(const AngularMapSky& sky, const std::string& name) {
+  require_texels(sky.image, name);
+  const auto is_dark = [](const Rgb& texel) { return plumbline::is_black(texel); };
+  if (std::all_of(sky.image.pixels.begin(), sky.image.pixels.end(), is_dark)) return {};
+  const int width = std::clamp(2 * sky.image.width, kLeastCells, kMostCells);
+  const auto lookup = [&](const Vec3& direction) {
+    const Texel texel = texel_at(angular_map_from_direction(direction), sky.image.width, sky.image.height);
+    return sky.image.at(texel.x, texel.y);
+  };
+  std::vector<float> peaks = cell_peaks(lookup, name, width, width / 2);
+  raise_by_texels(peaks, width, width / 2, sky.image, name);
+  return part_of(mixed_with_uniform(peaks, width, width / 2));
+}
+
+SkyPart make_part(const AnalyticSky& sky, const std::string& name) {
+  if (!sky.radiance) throw InputError(name + ": an analytic sky without a function");
+  constexpr int kHeight = kAnalyticCells / 2;
+  return part_of(
+      mixed_with_uniform(cell_peaks(sky.radiance, name, kAnalyticCells, kHeight), kAnalyticCells, kHeight));
+}
+
+}  // namespace
+
+Vec3d UniformDensity::sample(double x, double y) const {
+  return direction_from(x, y);
+}
+
+double UniformDensity::pdf(const Vec3& /*direction*/) const {
+  return 1.0 / (4.0 * kPi);
+}
+
+LatLongDensity::LatLongDensity(int width, int height, const RowPeaks& row_peaks)
+    : width_(width), height_(height), row_borders_(static_cast<std::size_t>(height) + 1) {
+  for (int row = 0; row <= height; ++row) {
+    const double sine = std::sin(0.5 * kPi * row / height);
+    row_borders_[static_cast<std::size_t>(row)] = sine * sine;
+  }
+  table_ = TexelTable(height, width, [&](int row, std::span<double> weights) {
+    row_peaks(row, weights);
+    const double omega = cell_solid_angle(row);
+    for (double& weight : weights) weight *= omega;
+  });
+}
+
+// (2 pi / width) (cos t0 - cos t1)
+double LatLongDensity::cell_solid_angle(int row) const {
+  const auto i = static_cast<std::size_t>(row);
+  return 4.0 * kPi / width_ * (row_borders_[i + 1] - row_borders_[i]);
+}
+
+Vec3d LatLongDensity::sample(double x, double y) const {
+  const TexelTable::Pick pick = table_.pick(x, y);
+  const auto row = static_cast<std::size_t>(pick.row);
+  const double height_in_row = inside(pick.y, 2 * height_);
+  const double versine = row_borders_[row] + (row_borders_[row + 1] - row_borders_[row]) * height_in_row;
+  return direction_from((pick.column + inside(pick.x, width_)) / width_, versine);
+}
+
+double LatLongDensity::pdf(const Vec3& direction) const {
+  const Texel cell = texel_at(lat_long_from_direction(direction), width_, height_);
+  return table_.probability(cell.y, cell.x) / cell_solid_angle(cell.y);
+}
+
+CubeDensity::CubeDensity(const CubeMapSky& sky) : side_(sky.faces[0].width) {
+  table_ = TexelTable(6 * side_, side_, [&](int row, std::span<double> weights) {
+    const Image& face = sky.faces[static_cast<std::size_t>(row / side_)];
+    const int y = row % side_;
+    for (int x = 0; x < side_; ++x) {
+      weights[static_cast<std::size_t>(x)] =
+          static_cast<double>(max_magnitude(face.at(x, y))) * cube_texel_solid_angle(x, y, side_);
+    }
+  });
+}
+
+Vec3d CubeDensity::sample(double x, double y) const {
+  const TexelTable::Pick pick = table_.pick(x, y);
+  const double s = 2.0 * (pick.column + inside(pick.x, side_)) / side_ - 1.0;
+  const double t = 2.0 * (pick.row % side_ + inside(pick.y, side_)) / side_ - 1.0;
+  return cube_face_point(pick.row / side_, s, t);
+}
+
+// d omega = ds dt / r^3 with r the distance to the point (s, t) of the face, 1 / (largest component of the
+// unit direction); a texel is (2 / side)^2 of ds dt.
+double CubeDensity::pdf(const Vec3& direction) const {
+  const CubeCoordinate coordinate = cube_from_direction(direction);
+  const Texel texel = texel_at(coordinate.uv, side_, side_);
+  const auto nearness = static_cast<double>(max_magnitude(direction));
+  const double texel_area = 4.0 / (static_cast<double>(side_) * side_);
+  return table_.probability(coordinate.face * side_ + texel.y, texel.x) /
+         (texel_area * nearness * nearness * nearness);
+}
+
+SkyPart make_sky_density(const Sky& sky, const std::string& name) {
+  return std::visit([&](const auto& kind) { return make_part(kind, name); }, sky);
+}
+
+}  // namespace plumbline::light

@@ -1,0 +1,68 @@
+// reference/light/sky_density.hpp: densities in proportion to a sky's radiance, without its suns and its
+// rotation. Internal to reference/light; EnvironmentSampler is the interface.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "reference/light/environment.hpp"
+#include "reference/light/texel_table.hpp"
+
+namespace plumbline::light {
+
+/// 1 / 4 pi.
+class UniformDensity {
+ public:
+  [[nodiscard]] Vec3d sample(double x, double y) const;
+  [[nodiscard]] double pdf(const Vec3& direction) const;
+};
+
+/// Cells of a lat-long grid in proportion to peak times solid angle, uniform in solid angle inside a cell.
+class LatLongDensity {
+ public:
+  /// Writes the peaks (largest magnitude of radiance) of one row of cells; called from several threads.
+  using RowPeaks = std::function<void(int row, std::span<double> peaks)>;
+  LatLongDensity(int width, int height, const RowPeaks& row_peaks);
+
+  [[nodiscard]] Vec3d sample(double x, double y) const;
+  [[nodiscard]] double pdf(const Vec3& direction) const;
+  /// Sum of peak times solid angle.
+  [[nodiscard]] double power() const { return table_.total(); }
+
+ private:
+  [[nodiscard]] double cell_solid_angle(int row) const;
+
+  int width_ = 0;
+  int height_ = 0;
+  std::vector<double> row_borders_;  // height + 1 values of (1 - cos theta) / 2
+  TexelTable table_;
+};
+
+/// Texels of a cube map in proportion to magnitude times solid angle, uniform on the face inside a texel.
+class CubeDensity {
+ public:
+  explicit CubeDensity(const CubeMapSky& sky);
+
+  [[nodiscard]] Vec3d sample(double x, double y) const;
+  [[nodiscard]] double pdf(const Vec3& direction) const;
+  [[nodiscard]] double power() const { return table_.total(); }
+
+ private:
+  int side_ = 0;
+  TexelTable table_;  // the six faces under each other
+};
+
+/// None (std::monostate) for a black sky.
+using SkyDensity = std::variant<std::monostate, UniformDensity, LatLongDensity, CubeDensity>;
+
+struct SkyPart {
+  SkyDensity density;
+  double power = 0.0;  // integral of the density before it was normalised [W m^-2 sr^-1 sr]
+};
+/// @throws InputError when an image is empty, the faces of a cube are not equal squares, or a radiance is not
+/// finite; the message begins with `name`.
+[[nodiscard]] SkyPart make_sky_density(const Sky& sky, const std::string& name);
+
+}  // namespace plumbline::light
