@@ -24,9 +24,9 @@ inline Quad quad_sqrt(Quad value) {
 }
 
 /// All functions of `bands` bands at direction / |direction|, index l(l+1)+m.
-/// The textbook route: P_m^m = (2m - 1)!! sin^m with the Condon-Shortley sign, unnormalised recurrence in l for fixed m,
-/// then K_lm and the azimuth as a Chebyshev recurrence. Its numbers overflow nothing in quadruple precision up to a few
-/// hundred bands; exact to 1e-30.
+/// The textbook route: P_m^m = (2m - 1)!! sin^m with the Condon-Shortley sign, unnormalised recurrence in l
+/// for fixed m, then K_lm and the azimuth as a Chebyshev recurrence. Its numbers overflow nothing in
+/// quadruple precision up to a few hundred bands; exact to 1e-30 (1e-15 where long double stands in).
 inline std::vector<Quad> evaluate(int bands, const Vec3d& direction) {
   const Quad dx = direction.x;
   const Quad dy = direction.y;
@@ -36,9 +36,9 @@ inline std::vector<Quad> evaluate(int bands, const Vec3d& direction) {
   const Quad sine = quad_sqrt(dx * dx + dy * dy) / length;
   const Quad cos_phi = sine > Quad(0) ? dx / (length * sine) : Quad(1);
   const Quad sin_phi = sine > Quad(0) ? dy / (length * sine) : Quad(0);
-  const Quad pi = Quad(3.14159265358979323846264338327950288L) +
-                  // what long double leaves out of pi, so that quad_pi is good to 1e-34
-                  (sizeof(Quad) > sizeof(long double) || sizeof(Quad) == 16 ? Quad(0) : Quad(0));
+  // pi in two doubles' worth of digits beyond long double's: the high part is exact, the low part is what it
+  // leaves out.
+  const Quad pi = Quad(3.141592653589793115997963468544185161590576171875) + Quad(1.2246467991473531772e-16L);
   std::vector<Quad> values(static_cast<std::size_t>(bands * bands));
   Quad top = 1;  // P_m^m
   Quad cos_m = 1;
