@@ -119,11 +119,12 @@ Vec3 direction_from_lat_long(const Vec2& uv) {
   return Vec3(Vec3d(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)));
 }
 
-// At +Z and -Z the azimuth is undefined: any is right at the centre, and any point of the rim is -Z.
+// At +Z and -Z the azimuth is undefined: any is right at the centre, and any point of the rim is -Z. So close
+// to them that the squares underflow it would be noise.
 Vec2 angular_map_from_direction(const Vec3& direction) {
   const float across = length_of(direction.x, direction.y);
   const float radius = 2.0F * angle_in_turns(across, direction.z);  // 0 … 1
-  if (!(across > 0.0F)) return {0.5F + 0.5F * radius, 0.5F};
+  if (!(across > 1e-15F)) return {0.5F + 0.5F * radius, 0.5F};
   const float scale = 0.5F * radius / across;
   return {0.5F + scale * direction.x, 0.5F - scale * direction.y};
 }

@@ -80,6 +80,17 @@ Vec3d sample_sky(const SkyDensity& density, double x, double y) {
   return std::visit(sample, density);
 }
 
+Vec3d centre_of_texel(const SkyDensity& density, double x, double y) {
+  const auto centre = [&](const auto& kind) {
+    if constexpr (std::is_same_v<decltype(kind), const std::monostate&>) {
+      return Vec3d(0.0);
+    } else {
+      return kind.centre(x, y);
+    }
+  };
+  return std::visit(centre, density);
+}
+
 // A direction whose chord to the axis has this length: 1 - cos a = chord^2 / 2, sin a = chord sqrt(1 -
 // chord^2 / 4).
 Vec3d around(const Vec3d& axis, double chord, double turns) {
@@ -139,21 +150,29 @@ Vec3 EnvironmentSampler::sample_cone(const Cone& cone, double x, double y) const
   return to_world(around(axis, std::max(0.0, chord - kRounding), x));
 }
 
+// Turning a direction rounds it to 6e-8, which near a pole of the environment is a large angle of azimuth:
+// the direction may leave its texel. That is harmless unless it meets a black one; then the texel's centre is
+// given.
+Vec3 EnvironmentSampler::sample_sky(double x, double y) const {
+  const Vec3 direction = to_world(light::sample_sky(sky_, x, y));
+  return pdf(direction) > 0.0 ? direction : to_world(centre_of_texel(sky_, x, y));
+}
+
+Vec3 EnvironmentSampler::sample_cones(double x, double y) const {
+  std::size_t chosen = 0;
+  while (chosen + 1 < cones_.size() && x >= cones_[chosen].probability) {
+    x -= cones_[chosen].probability;
+    ++chosen;
+  }
+  return sample_cone(cones_[chosen], x / cones_[chosen].probability, y);
+}
+
 std::optional<DirectionSample> EnvironmentSampler::sample(Vec2 u) const {
   if (is_black_) return std::nullopt;
   const glm::dvec2 numbers = with_low_bits(u);
   DirectionSample result;
-  if (cones_.empty() || numbers.x < sky_probability_) {
-    result.direction = to_world(sample_sky(sky_, numbers.x / sky_probability_, numbers.y));
-  } else {
-    double rest = numbers.x - sky_probability_;
-    std::size_t chosen = 0;
-    while (chosen + 1 < cones_.size() && rest >= cones_[chosen].probability) {
-      rest -= cones_[chosen].probability;
-      ++chosen;
-    }
-    result.direction = sample_cone(cones_[chosen], rest / cones_[chosen].probability, numbers.y);
-  }
+  result.direction = numbers.x < sky_probability_ ? sample_sky(numbers.x / sky_probability_, numbers.y)
+                                                  : sample_cones(numbers.x - sky_probability_, numbers.y);
   result.pdf = pdf(result.direction);
   if (!(result.pdf > 0.0)) return std::nullopt;
   result.radiance = radiance(*environment_, result.direction);

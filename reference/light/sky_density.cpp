@@ -225,10 +225,17 @@ double LatLongDensity::cell_solid_angle(int row) const {
 
 Vec3d LatLongDensity::sample(double x, double y) const {
   const TexelTable::Pick pick = table_.pick(x, y);
+  return inside_cell(pick, inside(pick.x, width_), inside(pick.y, 2 * height_));
+}
+
+Vec3d LatLongDensity::centre(double x, double y) const {
+  return inside_cell(table_.pick(x, y), 0.5, 0.5);
+}
+
+Vec3d LatLongDensity::inside_cell(const TexelTable::Pick& pick, double x, double y) const {
   const auto row = static_cast<std::size_t>(pick.row);
-  const double height_in_row = inside(pick.y, 2 * height_);
-  const double versine = row_borders_[row] + (row_borders_[row + 1] - row_borders_[row]) * height_in_row;
-  return direction_from((pick.column + inside(pick.x, width_)) / width_, versine);
+  const double versine = row_borders_[row] + (row_borders_[row + 1] - row_borders_[row]) * y;
+  return direction_from((pick.column + x) / width_, versine);
 }
 
 double LatLongDensity::pdf(const Vec3& direction) const {
@@ -249,8 +256,16 @@ CubeDensity::CubeDensity(const CubeMapSky& sky) : side_(sky.faces[0].width) {
 
 Vec3d CubeDensity::sample(double x, double y) const {
   const TexelTable::Pick pick = table_.pick(x, y);
-  const double s = 2.0 * (pick.column + inside(pick.x, side_)) / side_ - 1.0;
-  const double t = 2.0 * (pick.row % side_ + inside(pick.y, side_)) / side_ - 1.0;
+  return inside_texel(pick, inside(pick.x, side_), inside(pick.y, side_));
+}
+
+Vec3d CubeDensity::centre(double x, double y) const {
+  return inside_texel(table_.pick(x, y), 0.5, 0.5);
+}
+
+Vec3d CubeDensity::inside_texel(const TexelTable::Pick& pick, double x, double y) const {
+  const double s = 2.0 * (pick.column + x) / side_ - 1.0;
+  const double t = 2.0 * (pick.row % side_ + y) / side_ - 1.0;
   return cube_face_point(pick.row / side_, s, t);
 }
 

@@ -12,10 +12,14 @@
 
 namespace plumbline::light {
 
+// Each density has sample(x, y), a direction for two numbers in [0, 1); pdf(direction); and centre(x, y), the
+// middle of the texel that sample(x, y) lies in, for when rounding has carried that over the border.
+
 /// 1 / 4 pi.
 class UniformDensity {
  public:
   [[nodiscard]] Vec3d sample(double x, double y) const;
+  [[nodiscard]] Vec3d centre(double x, double y) const { return sample(x, y); }
   [[nodiscard]] double pdf(const Vec3& direction) const;
 };
 
@@ -27,12 +31,14 @@ class LatLongDensity {
   LatLongDensity(int width, int height, const RowPeaks& row_peaks);
 
   [[nodiscard]] Vec3d sample(double x, double y) const;
+  [[nodiscard]] Vec3d centre(double x, double y) const;
   [[nodiscard]] double pdf(const Vec3& direction) const;
   /// Sum of peak times solid angle.
   [[nodiscard]] double power() const { return table_.total(); }
 
  private:
   [[nodiscard]] double cell_solid_angle(int row) const;
+  [[nodiscard]] Vec3d inside_cell(const TexelTable::Pick& pick, double x, double y) const;
 
   int width_ = 0;
   int height_ = 0;
@@ -46,10 +52,13 @@ class CubeDensity {
   explicit CubeDensity(const CubeMapSky& sky);
 
   [[nodiscard]] Vec3d sample(double x, double y) const;
+  [[nodiscard]] Vec3d centre(double x, double y) const;
   [[nodiscard]] double pdf(const Vec3& direction) const;
   [[nodiscard]] double power() const { return table_.total(); }
 
  private:
+  [[nodiscard]] Vec3d inside_texel(const TexelTable::Pick& pick, double x, double y) const;
+
   int side_ = 0;
   TexelTable table_;  // the six faces under each other
 };

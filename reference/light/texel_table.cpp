@@ -57,7 +57,7 @@ struct Found {
 };
 
 // `number` in [0, 1). Entries of no width are never found: the search takes the last of equal bounds.
-Found find(std::span<const std::uint32_t> bounds, std::span<const std::uint32_t> guide, double number) {
+Found entry_at(std::span<const std::uint32_t> bounds, std::span<const std::uint32_t> guide, double number) {
   const double position = number * static_cast<double>(kUnits);
   const auto unit = static_cast<std::uint32_t>(position);
   const std::size_t interval = static_cast<std::uint64_t>(unit) >> guide_shift(guide.size() - 1);
@@ -102,11 +102,11 @@ std::span<const std::uint32_t> TexelTable::column_bounds(int row) const {
 }
 
 TexelTable::Pick TexelTable::pick(double x, double y) const {
-  const Found row = find(row_bounds_, row_guide_, y);
+  const Found row = entry_at(row_bounds_, row_guide_, y);
   const std::size_t guide_count = guide_size(columns_) + 1;
   const auto guide =
       std::span(column_guide_).subspan(static_cast<std::size_t>(row.entry) * guide_count, guide_count);
-  const Found column = find(column_bounds(row.entry), guide, x);
+  const Found column = entry_at(column_bounds(row.entry), guide, x);
   return {row.entry, column.entry, column.rest, row.rest};
 }
 
