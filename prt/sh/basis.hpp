@@ -26,24 +26,38 @@ inline constexpr int kMaxBands = 1000;
 void require_bands(int bands);
 
 /// Evaluates all functions of `bands` bands at a direction. Make one and use it for many directions.
+///
+/// No trigonometry, no factorials, no division: sin^m(theta) e^(i m phi) is (x + iy)^m, so that m > 0 keeps
+/// its digits at the poles. Cost: about 7 flops a coefficient; 10 bands or fewer are straight-line code.
+/// Above 5 bands float computes in double and rounds once, so that its error is that of the rounded
+/// direction. Largest absolute error over uniform directions (ShBasis.* tests hold it against quadruple
+/// precision):
+///   double  3e-15, 4e-14, 2e-13 at 6, 20, 64 bands;   float  7e-7, 2.5e-6, 1e-5 at 6, 10, 20.
+/// Finite for every unit direction up to kMaxBands. m = 0 at high degree is as ill conditioned near the poles
+/// as z is there: an error of l^2/2 times z's rounding.
 template <class Real>
 class Basis {
  public:
+  /// @throws InputError unless 1 <= bands <= kMaxBands
   explicit Basis(int bands);
 
   [[nodiscard]] int bands() const { return bands_; }
   [[nodiscard]] int coefficient_count() const { return bands_ * bands_; }
 
-  /// Writes coefficient_count() values; (x, y, z) must be unit length.
+  /// Writes coefficient_count() values, index l(l+1)+m; (x, y, z) must be unit length.
+  /// @throws InputError when `values` is shorter than coefficient_count()
   void evaluate(Real x, Real y, Real z, std::span<Real> values) const;
 
  private:
   int bands_ = 0;
-  std::vector<Real> constants_;
+  std::vector<double> constants_;  // empty where closed forms serve
 };
 
 extern template class Basis<float>;
 extern template class Basis<double>;
+
+/// The general recurrence, without the straight-line code for few bands: its oracle in the tests.
+[[nodiscard]] std::vector<double> evaluate_basis_by_recurrence(int bands, const Vec3d& direction);
 
 /// One direction, in double: for tests and for places where speed does not matter.
 [[nodiscard]] std::vector<double> evaluate_basis(int bands, const Vec3d& direction);
