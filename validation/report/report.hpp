@@ -31,6 +31,8 @@ struct Gallery {
     image::Image8 image;  // already colour mapped
     double scale = 0.0;   // value of the brightest colour
     std::string unit;     // "radiance", "% of the mean"
+    image::Image8 ramp =
+        {};  // one row, the colours from 0 to `scale`; empty = the scale is given in words only
   };
   std::string title;
   std::string caption;
@@ -79,14 +81,27 @@ struct Report {
   nlohmann::json data = nlohmann::json::object();  // extra numbers for the JSON form
 };
 
+/// The finding's own verdict, except that a pass with a NaN among its numbers, or with an infinite measured
+/// value, counts as fail: such a check was not able to fail.
+[[nodiscard]] checks::Verdict verdict(const checks::Finding& finding);
 /// fail if any finding fails, else inconclusive if any is or there are none, else pass.
 [[nodiscard]] checks::Verdict verdict(const Report& report);
 
-/// Everything but the pictures. Non-finite numbers become the strings "nan", "inf", "-inf".
+/// |test - reference| as metrics::heat_map draws it, with the colours of its scale.
+/// @throws InputError as metrics::heat_map does.
+[[nodiscard]] Gallery::ErrorMap error_map(std::string label, const image::Image& reference,
+                                          const image::Image& test, double scale, std::string unit);
+
+/// Everything but the pictures; keys: title, summary, verdict, date, version, command, machine, settings,
+/// headlines, galleries, charts, tables, findings, data. Settings are an object; the values of a repeated
+/// name are joined by ", ". Bytes that are no UTF-8 become U+FFFD. Non-finite numbers become the strings
+/// "nan", "inf", "-inf".
 [[nodiscard]] nlohmann::json to_json(const Report& report);
 /// JUnit XML: one test case per finding, family = class name; inconclusive counts as skipped with its reason.
 [[nodiscard]] std::string to_junit(const Report& report);
-/// One self-contained page that opens offline: no network, pictures inside.
+/// One self-contained page that opens offline: no network, pictures inside, radiance to one part in 1477 for
+/// exposure and read-out.
+/// @throws InputError when a picture's pixels are not width * height.
 [[nodiscard]] std::string to_html(const Report& report);
 
 }  // namespace plumbline::report
