@@ -71,7 +71,7 @@ Scene make_open_box() {
         add_material(scene, {.name = wall.name, .albedo = wall.albedo, .is_double_sided = true});
     append(scene, make_grid(wall.corner, wall.edge_u, wall.edge_v, kCells, kCells), material);
   }
-  scene.cameras.push_back(look_at({0.15F, 3.9F, 0.95F}, {0.0F, 0.55F, -0.15F}, kUp, 42.0F, "above"));
+  scene.cameras.push_back(look_at({0.0F, 3.6F, 0.95F}, {0.0F, 0.45F, -0.2F}, kUp, 50.0F, "above"));
   return scene;
 }
 
@@ -102,7 +102,7 @@ constexpr std::array<Entry, 7> kEntries = {{
     {"open-box",
      "5760 triangles: box without a lid, five colours, double-sided; interreflected per-vertex bakes",
      make_open_box},
-    {"plaza", "? triangles: colonnades, arch, knot sculpture; a detailed scene for skies and suns",
+    {"plaza", "78188 triangles: colonnades, arch, knot sculpture; a detailed scene for skies and suns",
      make_plaza},
     {"convex", "20 triangles: icosahedron, albedo 1; white furnace and unshadowed transfer", make_convex},
 }};

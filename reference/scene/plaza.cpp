@@ -224,7 +224,7 @@ Scene make_plaza() {
   const auto clay = add_material(scene, {.name = "clay", .albedo = Rgb(0.70F, 0.38F, 0.26F)});
   const auto leaf = add_material(scene, {.name = "leaf", .albedo = Rgb(0.16F, 0.34F, 0.09F)});
 
-  append(scene, make_grid({-18.0, 0.0, 18.0}, {36.0, 0.0, 0.0}, {0.0, 0.0, -36.0}, 72, 72), gravel);
+  append(scene, make_grid({-18.0, 0.0, 18.0}, {36.0, 0.0, 0.0}, {0.0, 0.0, -36.0}, 64, 64), gravel);
   append(scene, make_terrace(), limestone);
   for (const Arc& arc : kArcs) {
     append(scene, make_colonnade(arc), marble);
@@ -235,13 +235,13 @@ Scene make_plaza() {
   append(scene, make_knot(), gold);
   const Mesh urn = make_urn();
   const Mesh bush = make_bush();
-  for (const double x : {-3.6, 3.6}) {
-    const Vec3d foot(x, 0.0, 6.9);
+  for (const double x : {-3.2, 3.2}) {
+    const Vec3d foot(x, 0.0, 6.8);
     append(scene, placed(urn, foot, 1.0, x), clay);
     append(scene, placed(bush, foot + Vec3d(0.0, 1.30, 0.0), 1.0, x), leaf);
   }
   scene.cameras.push_back(
-      look_at({2.6F, 2.5F, 13.5F}, {0.0F, 2.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, 38.0F, "front"));
+      look_at({0.7F, 2.7F, 15.4F}, {0.0F, 1.9F, 0.0F}, {0.0F, 1.0F, 0.0F}, 37.0F, "front"));
   scene.cameras.push_back(
       look_at({-2.4F, 2.2F, 3.6F}, {0.1F, 2.4F, 0.0F}, {0.0F, 1.0F, 0.0F}, 42.0F, "sculpture"));
   return scene;
