@@ -2,6 +2,7 @@
 // Right-handed, +Y up. CONVENTIONS.md#surfaces says what a surface does to light.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -23,14 +24,20 @@ struct Material {
   bool is_double_sided = false;
 };
 
-/// Linear albedo image, looked up bilinearly, repeated (the glTF default). Texture coordinate (0, 0) is the
-/// top left corner.
+/// What lies outside the unit square of a texture.
+enum class Wrap : std::uint8_t { kRepeat, kMirror, kClamp };
+
+/// Linear albedo image, looked up bilinearly (texel centres at half texels), repeated unless told otherwise.
+/// Texture coordinate (0, 0) is the top left corner.
 struct Texture {
   image::Image image;
+  Wrap wrap_u = Wrap::kRepeat;
+  Wrap wrap_v = Wrap::kRepeat;
 };
 
 /// All meshes of a file in one indexed triangle list. Vertex i is positions[i] with normals[i]; vertices keep
-/// the file's order, and are duplicated only where a normal was missing and a crease splits them.
+/// the file's order, and are duplicated only where a normal was missing and a crease splits them. A vertex
+/// that no triangle uses and whose normal was missing has the normal +Y.
 struct Scene {
   std::string name;
   std::vector<Vec3> positions;
@@ -43,6 +50,7 @@ struct Scene {
   std::vector<Texture> textures;
   std::vector<light::PunctualLight> lights;
   std::vector<Camera> cameras;
+  std::size_t dropped_degenerate = 0;  // triangles without area that loading left out: worth a warning
 };
 
 /// Axis-aligned bounds of all vertices that a triangle uses.
@@ -53,18 +61,25 @@ struct Bounds {
 [[nodiscard]] Bounds bounds(const Scene& scene);
 
 /// Throws InputError ("<where>: <relation>: <value>") unless: there is at least one triangle; indices are in
-/// range; positions and normals are finite; normals are unit length (to 1e-3); array sizes agree; albedos are
-/// in [0, 1]; emission is finite and not negative; no triangle is degenerate (zero area in float).
+/// range; positions and normals are finite, positions within +-1e18 (Embree's limit); normals are unit length
+/// (to 1e-3); array sizes agree; albedos (factor, texture, vertex colour) are in [0, 1]; emission is finite
+/// and not negative; lights and cameras are finite, with unit directions and angles in range; no triangle is
+/// degenerate.
 void validate(const Scene& scene, const std::string& where);
+
+/// A triangle without area: |(b - a) x (c - a)| <= 1e-12 x (longest edge)^2, in double. That is what equal or
+/// collinear vertices give; the thinnest sliver whose normal means something is far above it.
+[[nodiscard]] bool is_degenerate(Vec3 a, Vec3 b, Vec3 c);
 
 /// Geometric unit normal of a triangle (counter-clockwise front).
 [[nodiscard]] Vec3 geometric_normal(const Scene& scene, std::uint32_t triangle);
 
 /// Albedo at barycentric coordinates (b1, b2 weigh the triangle's second and third vertex): factor x texture
-/// x vertex colour.
+/// x vertex colour. The scene has passed validate().
 [[nodiscard]] Rgb albedo_at(const Scene& scene, std::uint32_t triangle, Vec2 barycentrics);
 
-/// 64-bit fingerprint of everything that affects an image, as 16 hexadecimal digits. Names are left out.
+/// 64-bit fingerprint (XXH3) of everything that affects an image, cameras included, as 16 hexadecimal digits.
+/// Names are left out.
 [[nodiscard]] std::string fingerprint(const Scene& scene);
 
 }  // namespace plumbline::scene
