@@ -81,7 +81,11 @@ Image read_image(const std::filesystem::path& path) {
 Image read_image(std::string_view bytes, const std::string& name) {
   if (bytes.empty()) throw InputError(name + ": is empty");
   OIIO::Filesystem::IOMemReader proxy(const_cast<char*>(bytes.data()), bytes.size());  // only read
-  const OIIO::ImageSpec options = open_options();
+  OIIO::ImageSpec options = open_options();
+  // OpenImageIO 2.4 passes the proxy on only when there are no options, so it goes in among them too:
+  // otherwise a file that has this name is read instead.
+  OIIO::Filesystem::IOProxy* source = &proxy;
+  options.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &source);
   auto input = OIIO::ImageInput::open(name, &options, &proxy);
   if (!input)
     throw InputError(fmt::format("{}: cannot read as an image: {}", name, first_line(OIIO::geterror())));

@@ -15,9 +15,9 @@ void require_finite(const Scene& scene, const std::vector<std::uint8_t>& has_nor
                     const std::string& where) {
   for (std::size_t i = 0; i < scene.positions.size(); ++i) {
     const Vec3 p = scene.positions[i];
-    if (!is_finite(p)) {
-      throw InputError(
-          fmt::format("{}: position of vertex {} is not finite: ({}, {}, {})", where, i, p.x, p.y, p.z));
+    if (!is_finite(p) || max_magnitude(p) > kLargestCoordinate) {
+      throw InputError(fmt::format("{}: position of vertex {} is not finite and within {}: ({}, {}, {})",
+                                   where, i, kLargestCoordinate, p.x, p.y, p.z));
     }
     const Vec3 n = scene.normals[i];
     if (has_normal[i] != 0 && !is_finite(n)) {

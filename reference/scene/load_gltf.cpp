@@ -50,17 +50,24 @@ Rgb to_rgb(const std::vector<double>& numbers, Rgb otherwise) {
 
 // ---------------------------------------------------------------- materials and textures
 
+// The image library goes by extensions first. Files lie about theirs, so the first bytes count, then the URI.
+std::string extension_of(std::string_view bytes, const std::string& uri) {
+  if (bytes.starts_with("\x89PNG")) return ".png";
+  if (bytes.starts_with("\xFF\xD8\xFF")) return ".jpg";
+  return std::filesystem::path(uri).extension().string();
+}
+
 image::Image read_texture_image(const Loader& loader, int index) {
   const tinygltf::Image& source = at(loader, loader.model.images, index, "image");
   const std::string name = fmt::format("{}: image {}", loader.where, index);
-  if (source.bufferView >= 0) {
-    return image::read_image(view_bytes(loader.model, source.bufferView, name), name);
-  }
-  if (source.image.empty()) {
+  if (source.bufferView < 0 && source.image.empty()) {
     throw InputError(fmt::format("{}: cannot find the file {}", name, one_line(source.uri)));
   }
-  const std::string_view bytes(reinterpret_cast<const char*>(source.image.data()), source.image.size());
-  return image::read_image(bytes, name);
+  const std::string_view bytes =
+      source.bufferView >= 0
+          ? view_bytes(loader.model, source.bufferView, name)
+          : std::string_view(reinterpret_cast<const char*>(source.image.data()), source.image.size());
+  return image::read_image(bytes, name + one_line(extension_of(bytes, source.uri)));
 }
 
 Wrap to_wrap(int mode) {

@@ -14,7 +14,6 @@
 namespace plumbline::scene {
 namespace {
 
-constexpr float kLargestCoordinate = 1e18F;  // Embree leaves out triangles beyond 1.8e18 without a word
 constexpr float kUnitTolerance = 1e-3F;
 
 std::string text(Vec3 v) {

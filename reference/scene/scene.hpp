@@ -60,8 +60,11 @@ struct Bounds {
 };
 [[nodiscard]] Bounds bounds(const Scene& scene);
 
+/// Embree leaves out triangles beyond 1.8e18 without a word.
+inline constexpr float kLargestCoordinate = 1e18F;
+
 /// Throws InputError ("<where>: <relation>: <value>") unless: there is at least one triangle; indices are in
-/// range; positions and normals are finite, positions within +-1e18 (Embree's limit); normals are unit length
+/// range; positions and normals are finite, positions within kLargestCoordinate; normals are unit length
 /// (to 1e-3); array sizes agree; albedos (factor, texture, vertex colour) are in [0, 1]; emission is finite
 /// and not negative; lights and cameras are finite, with unit directions and angles in range; no triangle is
 /// degenerate.
