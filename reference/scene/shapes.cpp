@@ -236,9 +236,28 @@ Mesh make_lathe(std::span<const ProfilePoint> profile, int segments, double crea
   return mesh;
 }
 
+namespace {
+
+void add_sector_ends(Mesh& mesh, std::span<const ProfilePoint> profile, double from_rad, double to_rad) {
+  std::vector<Vec3> start;
+  std::vector<Vec3> end;
+  for (const ProfilePoint& p : profile) {
+    start.emplace_back(around_y(p.radius, p.height, from_rad));
+    end.emplace_back(around_y(p.radius, p.height, to_rad));
+  }
+  std::reverse(end.begin(), end.end());
+  // The azimuth grows along (-sin a, 0, -cos a); each end looks away from the sweep.
+  add_fan(mesh, start, -around_y(1.0, 0.0, from_rad + kPi / 2.0));
+  add_fan(mesh, end, around_y(1.0, 0.0, to_rad + kPi / 2.0));
+}
+
+}  // namespace
+
 Mesh make_ring_sector(std::span<const ProfilePoint> profile, double from_rad, double to_rad, int segments) {
   Mesh mesh;
-  const auto azimuth = [&](int i) { return from_rad + (to_rad - from_rad) * i / segments; };
+  const auto azimuth = [&](int i) {
+    return i == segments ? to_rad : from_rad + (to_rad - from_rad) * i / segments;
+  };
   for (std::size_t e = 0; e < profile.size(); ++e) {
     const ProfilePoint& a = profile[e];
     const ProfilePoint& b = profile[(e + 1) % profile.size()];
@@ -254,16 +273,7 @@ Mesh make_ring_sector(std::span<const ProfilePoint> profile, double from_rad, do
       add_cell(mesh, v, v + 2, v + 3, v + 1);
     }
   }
-  std::vector<Vec3> start;
-  std::vector<Vec3> end;
-  for (const ProfilePoint& p : profile) {
-    start.emplace_back(around_y(p.radius, p.height, azimuth(0)));
-    end.emplace_back(around_y(p.radius, p.height, azimuth(segments)));
-  }
-  std::reverse(end.begin(), end.end());
-  // The azimuth grows along (-sin a, 0, -cos a); each end looks away from the sweep.
-  add_fan(mesh, start, -around_y(1.0, 0.0, azimuth(0) + kPi / 2.0));
-  add_fan(mesh, end, around_y(1.0, 0.0, azimuth(segments) + kPi / 2.0));
+  add_sector_ends(mesh, profile, from_rad, to_rad);
   return mesh;
 }
 

@@ -12,21 +12,25 @@ void require_albedo(double albedo, const char* function) {
   require(albedo >= 0.0 && albedo <= 1.0, function, "0 <= albedo <= 1", albedo);
 }
 
-/// 1 + q + ... + q^(terms-1), all terms for nullopt; added up from the small end, so that it is exact to
-/// rounding for q = 1 too.
-double geometric_sum(double ratio, std::optional<int> terms, const char* function) {
-  if (!terms) {
-    require(ratio >= 0.0 && ratio < 1.0, function, "albedo x form factor < 1 for all bounces", ratio);
-    return 1.0 / (1.0 - ratio);
-  }
-  require(*terms >= 0, function, "bounces >= 0", *terms);
+/// 1 + q + q^2 + ... for q < 1.
+double geometric_limit(double ratio, const char* function) {
+  require(ratio >= 0.0 && ratio < 1.0, function, "albedo x form factor < 1 for all bounces", ratio);
+  return 1.0 / (1.0 - ratio);
+}
+
+/// 1 + q + ... + q^(terms-1), by Horner's scheme: q = 1 is no special case.
+double geometric_partial_sum(double ratio, int terms, const char* function) {
+  require(terms >= 0, function, "bounces >= 0", terms);
   double sum = 0.0;
-  for (int k = 0; k < *terms; ++k) sum = 1.0 + ratio * sum;
+  for (int k = 0; k < terms; ++k) sum = 1.0 + ratio * sum;
   return sum;
 }
 
-std::optional<int> plus(Bounces bounces, int more) {
-  return bounces ? std::optional<int>(*bounces + more) : std::nullopt;
+/// The first N + more terms for N bounces, or all.
+double geometric_sum(double ratio, Bounces bounces, int more, const char* function) {
+  if (!bounces) return geometric_limit(ratio, function);
+  require(*bounces >= 0, function, "bounces >= 0", *bounces);
+  return geometric_partial_sum(ratio, *bounces + more, function);
 }
 
 // Two surfaces that see each other alternate: s1 = d1 + g1 d2 + g1 g2 d1 + g1 g2 g1 d2 ..., where g1 takes
@@ -36,10 +40,13 @@ struct Weights {
   double other = 0.0;
 };
 Weights alternating_series(double g1, double g2, Bounces bounces, const char* function) {
-  if (bounces) require(*bounces >= 0, function, "bounces >= 0", *bounces);
-  const std::optional<int> even = bounces ? std::optional<int>(*bounces / 2 + 1) : std::nullopt;
-  const std::optional<int> odd = bounces ? std::optional<int>((*bounces + 1) / 2) : std::nullopt;
-  return {geometric_sum(g1 * g2, even, function), g1 * geometric_sum(g1 * g2, odd, function)};
+  if (!bounces) {
+    const double sum = geometric_limit(g1 * g2, function);
+    return {sum, g1 * sum};
+  }
+  require(*bounces >= 0, function, "bounces >= 0", *bounces);
+  return {geometric_partial_sum(g1 * g2, *bounces / 2 + 1, function),
+          g1 * geometric_partial_sum(g1 * g2, (*bounces + 1) / 2, function)};
 }
 
 }  // namespace
@@ -50,18 +57,18 @@ double neumann_term(double direct, double albedo, double form_factor, int bounce
 }
 
 double neumann_sum(double direct, double albedo, double form_factor, Bounces bounces) {
-  return direct * geometric_sum(albedo * form_factor, plus(bounces, 1), "neumann_sum");
+  return direct * geometric_sum(albedo * form_factor, bounces, 1, "neumann_sum");
 }
 
 double neumann_remainder(double direct, double albedo, double form_factor, int bounces) {
   return neumann_term(direct, albedo, form_factor, bounces + 1) *
-         geometric_sum(albedo * form_factor, kAllBounces, "neumann_remainder");
+         geometric_limit(albedo * form_factor, "neumann_remainder");
 }
 
 // If all the walls have exit radiance L, every point receives pi L from every direction and L = L_e + rho L.
 double enclosure_radiance(double emission, double albedo, Bounces bounces) {
   require_albedo(albedo, "enclosure_radiance");
-  return emission * geometric_sum(albedo, plus(bounces, 2), "enclosure_radiance");
+  return emission * geometric_sum(albedo, bounces, 2, "enclosure_radiance");
 }
 
 // With exit radiance 1 everywhere, every point sees radiance 1 in every direction, sky or surface, and with
@@ -76,7 +83,7 @@ double sphere_indirect_irradiance(double flux, double radius, double albedo, Bou
   require(radius > 0.0, "sphere_indirect_irradiance", "radius > 0", radius);
   require_albedo(albedo, "sphere_indirect_irradiance");
   return albedo * inside_sphere_form_factor(flux, radius) *
-         geometric_sum(albedo, bounces, "sphere_indirect_irradiance");
+         geometric_sum(albedo, bounces, 0, "sphere_indirect_irradiance");
 }
 
 // Law of cosines for the distance d; the inward normal's cosine is (R - s c)/d.
@@ -105,7 +112,7 @@ double cavity_irradiance(double opening_half_angle, double albedo, double radian
 double bowl_indirect_irradiance(double aperture_irradiance, double albedo, Bounces bounces) {
   require_albedo(albedo, "bowl_indirect_irradiance");
   return aperture_irradiance * albedo / 4.0 *
-         geometric_sum(albedo / 2.0, bounces, "bowl_indirect_irradiance");
+         geometric_sum(albedo / 2.0, bounces, 0, "bowl_indirect_irradiance");
 }
 
 double dihedral_form_factor(double opening) {
@@ -148,7 +155,7 @@ Pair concentric_spheres_radiosity(double radius1, double radius2, const Pair& em
 Pair parallel_plates_radiosity(const Pair& emitted, const Pair& albedo) {
   require_albedo(albedo.first, "parallel_plates_radiosity");
   require_albedo(albedo.second, "parallel_plates_radiosity");
-  const double sum = geometric_sum(albedo.first * albedo.second, kAllBounces, "parallel_plates_radiosity");
+  const double sum = geometric_limit(albedo.first * albedo.second, "parallel_plates_radiosity");
   return {(emitted.first + albedo.first * emitted.second) * sum,
           (emitted.second + albedo.second * emitted.first) * sum};
 }

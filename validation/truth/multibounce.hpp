@@ -88,7 +88,7 @@ struct Pair {
 /// both faces reach `reach` along the edge to either side and away from it; the point is at distance d from
 /// the edge:
 ///   F = [atan(W/d) - d/sqrt(W^2 + d^2) atan(W/sqrt(W^2 + d^2))]/pi = 1/2 - (1/pi + 1/4) d/W + O((d/W)^2)
-/// W = 1000, d = 1: 0.499431988614.
+/// W = 1000, d = 1: 0.499431690424.
 [[nodiscard]] double finite_corner_form_factor(double reach, double distance);
 
 /// Radiosities of two concentric spheres r1 < r2 facing each other, q = (r1/r2)^2:
@@ -114,7 +114,7 @@ using ThreeBands = std::array<double, 9>;
 /// at every point of the floor; the wall's is got by exchanging the arguments. Exit radiance = albedo (T . l)
 /// for any distant light l of three bands.
 /// @param floor_normal, wall_normal  unit, perpendicular to each other (to 1e-6)
-/// floor +z, wall +y, both .8: T_00 = 0.235078993145, T_1-1 = -0.200990089, T_10 = 0.243263534.
+/// floor +z, wall +y, both .8: T_00 = 0.235078993145, T_1-1 = -0.200990089, T_10 = 0.243263540.
 [[nodiscard]] ThreeBands corner_transfer(const Vec3d& floor_normal, const Vec3d& wall_normal,
                                          double floor_albedo, double wall_albedo,
                                          Bounces bounces = kAllBounces);

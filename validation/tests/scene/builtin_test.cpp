@@ -87,7 +87,7 @@ bool overlap_in_plane(const Triangle& a, const Triangle& b) {
   constexpr double kSliver = 1e-5;  // metres: float rounding of coordinates up to 20 m is 1e-6
   const Vec3d normal = glm::normalize(scaled_normal(a));
   for (const Triangle* side : {&a, &b}) {
-    for (int k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < 3; ++k) {
       const Vec3d axis = glm::normalize(glm::cross(normal, (*side)[(k + 1) % 3] - (*side)[k]));
       const auto range = [&](const Triangle& t) {
         return std::minmax({glm::dot(axis, t[0]), glm::dot(axis, t[1]), glm::dot(axis, t[2])});
