@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "reference/light/environment.hpp"
 
@@ -41,8 +43,11 @@ struct Texel {
 [[nodiscard]] inline bool contains(const SunDisc& sun, const Vec3& local_direction) {
   if (sun.half_angle_rad >= kPi) return true;
   const Vec3d difference = Vec3d(local_direction) - Vec3d(sun.direction);
+  const double squared_chord = glm::dot(difference, difference);
+  if (squared_chord > sun.half_angle_rad * sun.half_angle_rad)
+    return false;  // a chord is shorter than its arc
   const double longest_chord = 2.0 * std::sin(0.5 * sun.half_angle_rad);
-  return glm::dot(difference, difference) <= longest_chord * longest_chord;
+  return squared_chord <= longest_chord * longest_chord;
 }
 
 /// 2 pi (1 - cos a), without the cancellation.

@@ -6,7 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <type_traits>
+#include <variant>
 
 #include "reference/base/error.hpp"
 #include "reference/light/environment_lookup.hpp"
@@ -58,37 +58,14 @@ void require_usable(const SunDisc& sun, const std::string& name) {
   }
 }
 
-double sky_pdf(const SkyDensity& density, const Vec3& local_direction) {
-  const auto pdf = [&](const auto& kind) {
-    if constexpr (std::is_same_v<decltype(kind), const std::monostate&>) {
-      return 0.0;
-    } else {
-      return kind.pdf(local_direction);
-    }
-  };
-  return std::visit(pdf, density);
+double pdf_of(const SkyDensity& density, const Vec3& local_direction) {
+  return std::visit([&](const auto& kind) { return kind.pdf(local_direction); }, density);
 }
-
-Vec3d sample_sky(const SkyDensity& density, double x, double y) {
-  const auto sample = [&](const auto& kind) {
-    if constexpr (std::is_same_v<decltype(kind), const std::monostate&>) {
-      return Vec3d(0.0);
-    } else {
-      return kind.sample(x, y);
-    }
-  };
-  return std::visit(sample, density);
+Vec3d sample_of(const SkyDensity& density, double x, double y) {
+  return std::visit([&](const auto& kind) { return kind.sample(x, y); }, density);
 }
-
-Vec3d centre_of_texel(const SkyDensity& density, double x, double y) {
-  const auto centre = [&](const auto& kind) {
-    if constexpr (std::is_same_v<decltype(kind), const std::monostate&>) {
-      return Vec3d(0.0);
-    } else {
-      return kind.centre(x, y);
-    }
-  };
-  return std::visit(centre, density);
+Vec3d centre_of(const SkyDensity& density, double x, double y) {
+  return std::visit([&](const auto& kind) { return kind.centre(x, y); }, density);
 }
 
 // A direction whose chord to the axis has this length: 1 - cos a = chord^2 / 2, sin a = chord sqrt(1 -
@@ -124,7 +101,7 @@ void EnvironmentSampler::add_cones() {
 }
 
 void EnvironmentSampler::share(double sky_power, double cone_power) {
-  const bool has_sky = !std::holds_alternative<std::monostate>(sky_);
+  const bool has_sky = !std::holds_alternative<NoDensity>(sky_);
   is_black_ = !has_sky && cones_.empty();
   if (is_black_) return;
   if (!has_sky || cones_.empty()) {
@@ -141,7 +118,7 @@ Vec3 EnvironmentSampler::to_world(const Vec3d& local_direction) const {
 
 // Uniform in solid angle: 1 - cos a, and so the square of the chord, is uniform. A direction that rounding
 // put outside the disc is drawn in by more than the rounding, at worst onto the axis.
-Vec3 EnvironmentSampler::sample_cone(const Cone& cone, double x, double y) const {
+Vec3 EnvironmentSampler::inside_cone(const Cone& cone, double x, double y) const {
   constexpr double kRounding = 5e-7;
   const Vec3d axis = glm::normalize(Vec3d(cone.sun->direction));
   const double chord = 2.0 * std::sin(0.5 * cone.sun->half_angle_rad) * std::sqrt(y);
@@ -150,39 +127,40 @@ Vec3 EnvironmentSampler::sample_cone(const Cone& cone, double x, double y) const
   return to_world(around(axis, std::max(0.0, chord - kRounding), x));
 }
 
+std::optional<DirectionSample> EnvironmentSampler::sample_towards(const Vec3& direction) const {
+  const double density = pdf(direction);
+  if (!(density > 0.0)) return std::nullopt;
+  return DirectionSample{direction, density, radiance(*environment_, direction)};
+}
+
 // Turning a direction rounds it to 6e-8, which near a pole of the environment is a large angle of azimuth:
 // the direction may leave its texel. That is harmless unless it meets a black one; then the texel's centre is
 // given.
-Vec3 EnvironmentSampler::sample_sky(double x, double y) const {
-  const Vec3 direction = to_world(light::sample_sky(sky_, x, y));
-  return pdf(direction) > 0.0 ? direction : to_world(centre_of_texel(sky_, x, y));
+std::optional<DirectionSample> EnvironmentSampler::sample_sky(double x, double y) const {
+  const auto result = sample_towards(to_world(sample_of(sky_, x, y)));
+  return result ? result : sample_towards(to_world(centre_of(sky_, x, y)));
 }
 
-Vec3 EnvironmentSampler::sample_cones(double x, double y) const {
+std::optional<DirectionSample> EnvironmentSampler::sample_cones(double x, double y) const {
   std::size_t chosen = 0;
   while (chosen + 1 < cones_.size() && x >= cones_[chosen].probability) {
     x -= cones_[chosen].probability;
     ++chosen;
   }
-  return sample_cone(cones_[chosen], x / cones_[chosen].probability, y);
+  return sample_towards(inside_cone(cones_[chosen], x / cones_[chosen].probability, y));
 }
 
 std::optional<DirectionSample> EnvironmentSampler::sample(Vec2 u) const {
   if (is_black_) return std::nullopt;
   const glm::dvec2 numbers = with_low_bits(u);
-  DirectionSample result;
-  result.direction = numbers.x < sky_probability_ ? sample_sky(numbers.x / sky_probability_, numbers.y)
-                                                  : sample_cones(numbers.x - sky_probability_, numbers.y);
-  result.pdf = pdf(result.direction);
-  if (!(result.pdf > 0.0)) return std::nullopt;
-  result.radiance = radiance(*environment_, result.direction);
-  return result;
+  if (numbers.x < sky_probability_) return sample_sky(numbers.x / sky_probability_, numbers.y);
+  return sample_cones(numbers.x - sky_probability_, numbers.y);
 }
 
 double EnvironmentSampler::pdf(const Vec3& direction) const {
   if (is_black_) return 0.0;
   const Vec3 local = to_environment_frame(*environment_, direction);
-  double result = sky_probability_ * sky_pdf(sky_, local);
+  double result = sky_probability_ * pdf_of(sky_, local);
   for (const Cone& cone : cones_) {
     if (contains(*cone.sun, local)) result += cone.probability * cone.density;
   }

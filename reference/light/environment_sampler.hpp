@@ -24,9 +24,9 @@ struct DirectionSample {
 ///   cell and on its border, with 5 % uniform;
 /// - suns: their own cones, uniform in solid angle.
 /// The density is the mixture of all of these: by power (magnitude times solid angle), but where there are
-/// both a sky and suns at least 10 % for each, for the places that see only one of them. Cost: 100 to 200 ns
-/// a sample, 50 ns a pdf, plus 1 ns a sun (2-GHz x86). Keeps a copy of nothing but its tables: the
-/// environment must outlive it.
+/// both a sky and suns at least 10 % for each, for the places that see only one of them. Deterministic in u.
+/// Cost: about 0.3 us a sample and 50 ns a pdf from an image of 1024 x 512, 5 ms and 6 bytes a texel to
+/// build. Keeps a copy of nothing but its tables: the environment must outlive it.
 class EnvironmentSampler {
  public:
   /// @throws InputError when an image is empty or the faces of a cube are not equal squares, when a radiance
@@ -34,8 +34,8 @@ class EnvironmentSampler {
   explicit EnvironmentSampler(const Environment& environment);
 
   /// None when the environment is black. u in [0, 1)^2. The result's radiance and pdf are exactly radiance()
-  /// and pdf() of the result's direction. (Also none when float rounding carries a direction out of its texel
-  /// onto a black one, which takes a polar row of a turned image more than 8192 wide.)
+  /// and pdf() of the result's direction. (Also none where the bright texels of a turned image are smaller
+  /// than the rounding of a float direction: polar rows of images more than 8192 wide.)
   [[nodiscard]] std::optional<DirectionSample> sample(Vec2 u) const;
   /// Density with which sample() gives this direction; 0 for a black environment.
   [[nodiscard]] double pdf(const Vec3& direction) const;
@@ -49,7 +49,10 @@ class EnvironmentSampler {
   };
   void add_cones();
   void share(double sky_power, double cone_power);
-  [[nodiscard]] Vec3 sample_cone(const Cone& cone, double x, double y) const;
+  [[nodiscard]] std::optional<DirectionSample> sample_towards(const Vec3& direction) const;
+  [[nodiscard]] std::optional<DirectionSample> sample_sky(double x, double y) const;
+  [[nodiscard]] std::optional<DirectionSample> sample_cones(double x, double y) const;
+  [[nodiscard]] Vec3 inside_cone(const Cone& cone, double x, double y) const;
   [[nodiscard]] Vec3 to_world(const Vec3d& local_direction) const;
 
   const Environment* environment_;

@@ -46,13 +46,20 @@ Vec3d direction_from(double turns, double versine) {
 double corner_solid_angle(double s, double t) {
   return std::atan2(s * t, std::sqrt(1.0 + s * s + t * t));
 }
-double cube_texel_solid_angle(int x, int y, int side) {
-  const double s0 = 2.0 * x / side - 1.0;
-  const double t0 = 2.0 * y / side - 1.0;
-  const double s1 = 2.0 * (x + 1) / side - 1.0;
-  const double t1 = 2.0 * (y + 1) / side - 1.0;
-  return corner_solid_angle(s1, t1) - corner_solid_angle(s0, t1) - corner_solid_angle(s1, t0) +
-         corner_solid_angle(s0, t0);
+// Of the texels of one face, row by row; all six are alike.
+std::vector<double> cube_texel_solid_angles(int side) {
+  const auto count = static_cast<std::size_t>(side);
+  const auto border = [side](std::size_t i) { return 2.0 * static_cast<double>(i) / side - 1.0; };
+  std::vector<double> corners((count + 1) * (count + 1));
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    corners[i] = corner_solid_angle(border(i % (count + 1)), border(i / (count + 1)));
+  }
+  std::vector<double> result(count * count);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const double* corner = &corners[i / count * (count + 1) + i % count];
+    result[i] = corner[count + 2] - corner[count + 1] - corner[1] + corner[0];
+  }
+  return result;
 }
 
 using Radiance = std::function<Rgb(const Vec3&)>;
@@ -244,12 +251,12 @@ double LatLongDensity::pdf(const Vec3& direction) const {
 }
 
 CubeDensity::CubeDensity(const CubeMapSky& sky) : side_(sky.faces[0].width) {
+  const std::vector<double> solid_angles = cube_texel_solid_angles(side_);
   table_ = TexelTable(6 * side_, side_, [&](int row, std::span<double> weights) {
     const Image& face = sky.faces[static_cast<std::size_t>(row / side_)];
-    const int y = row % side_;
-    for (int x = 0; x < side_; ++x) {
-      weights[static_cast<std::size_t>(x)] =
-          static_cast<double>(max_magnitude(face.at(x, y))) * cube_texel_solid_angle(x, y, side_);
+    const std::size_t first = static_cast<std::size_t>(row % side_) * weights.size();
+    for (std::size_t x = 0; x < weights.size(); ++x) {
+      weights[x] = static_cast<double>(max_magnitude(face.pixels[first + x])) * solid_angles[first + x];
     }
   });
 }

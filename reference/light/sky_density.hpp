@@ -15,6 +15,14 @@ namespace plumbline::light {
 // Each density has sample(x, y), a direction for two numbers in [0, 1); pdf(direction); and centre(x, y), the
 // middle of the texel that sample(x, y) lies in, for when rounding has carried that over the border.
 
+/// A black sky.
+class NoDensity {
+ public:
+  [[nodiscard]] Vec3d sample(double /*x*/, double /*y*/) const { return {0.0, 1.0, 0.0}; }
+  [[nodiscard]] Vec3d centre(double x, double y) const { return sample(x, y); }
+  [[nodiscard]] double pdf(const Vec3& /*direction*/) const { return 0.0; }
+};
+
 /// 1 / 4 pi.
 class UniformDensity {
  public:
@@ -63,8 +71,7 @@ class CubeDensity {
   TexelTable table_;  // the six faces under each other
 };
 
-/// None (std::monostate) for a black sky.
-using SkyDensity = std::variant<std::monostate, UniformDensity, LatLongDensity, CubeDensity>;
+using SkyDensity = std::variant<NoDensity, UniformDensity, LatLongDensity, CubeDensity>;
 
 struct SkyPart {
   SkyDensity density;

@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <map>
 
@@ -18,8 +16,10 @@ namespace {
 
 using image::Image;
 
+// One a test: tests may run at the same time.
 fs::path folder() {
-  const fs::path result = fs::path(::testing::TempDir()) / "plumbline_environment_file";
+  const std::string test = ::testing::UnitTest::GetInstance()->current_test_info()->name();
+  const fs::path result = fs::path(::testing::TempDir()) / ("plumbline_environment_file_" + test);
   fs::create_directories(result);
   return result;
 }

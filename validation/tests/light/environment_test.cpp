@@ -10,7 +10,6 @@
 namespace plumbline::light {
 namespace {
 
-using testing::kSeed;
 using testing::Numbers;
 using testing::special_directions;
 
