@@ -182,6 +182,31 @@ TEST(ShProjection, ManyBandsMatchBruteForce) {
             1e-11);
 }
 
+TEST(ShProjection, CoarseImagesWithManyBandsAreExactToo) {
+  const light::Environment environment = environment_of(light::LatLongSky{random_image(4, 2, 6)});
+  EXPECT_LE(largest_difference(project_radiance(environment, 40).coefficients,
+                               lat_long_by_texels(environment, 40, 60)),
+            1e-11);
+}
+
+TEST(GaussCount, IsTheLeastThatReachesTheTolerance) {
+  for (const double phase : {0.1, 1.0, 10.0, 100.0}) {
+    const int count = gauss_count(phase, 1e-12);
+    const auto error = [&](int k) {
+      const GaussLegendre rule = gauss_legendre(k);
+      double sum = 0.0;
+      for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+        sum += 0.5 * rule.weights[i] * std::cos(0.5 * phase * rule.nodes[i]);
+      }
+      return std::abs(sum - std::sin(0.5 * phase) / (0.5 * phase));
+    };
+    EXPECT_LE(error(count), 1e-12) << phase;
+    if (count > 4) {
+      EXPECT_GE(error(count - 3), 1e-14) << phase;
+    }
+  }
+}
+
 // One texel alone: its solid angle is dphi (cos t0 - cos t1).
 TEST(ShProjection, SingleTexelHasItsExactSolidAngle) {
   image::Image image = image::make_image(64, 32);
