@@ -30,9 +30,12 @@ void require_bands(int bands);
 /// No trigonometry, no factorials, no division: sin^m(theta) e^(i m phi) is (x + iy)^m, so that m > 0 keeps
 /// its digits at the poles. Cost: about 7 flops a coefficient; 10 bands or fewer are straight-line code.
 /// Above 5 bands float computes in double and rounds once, so that its error is that of the rounded
-/// direction. Largest absolute error over uniform directions (ShBasis.* tests hold it against quadruple
-/// precision):
-///   double  3e-15, 4e-14, 2e-13 at 6, 20, 64 bands;   float  7e-7, 2.5e-6, 1e-5 at 6, 10, 20.
+/// direction.
+///
+/// Largest absolute error over uniform directions (ShBasis.* tests, against quadruple precision):
+/// - double: 3e-15, 4e-14, 2e-13 at 6, 20, 64 bands
+/// - float: 7e-7, 2.5e-6, 1e-5 at 6, 10, 20 bands
+///
 /// Finite for every unit direction up to kMaxBands. m = 0 at high degree is as ill conditioned near the poles
 /// as z is there: an error of l^2/2 times z's rounding.
 template <class Real>

@@ -20,8 +20,7 @@ void require_consistent(const ShRgb& function, const char* where) {
   }
 }
 
-/// The sum over all coefficients, for many directions. One plane a channel, so that the inner loops are plain
-/// sums.
+/// The sum over all coefficients, for many directions.
 class BandLimitedFunction {
  public:
   explicit BandLimitedFunction(ShRgb function)
@@ -40,9 +39,15 @@ class BandLimitedFunction {
  private:
   [[nodiscard]] RgbD sum(const Vec3d& direction, std::span<double> values) const {
     basis_.evaluate(direction.x, direction.y, direction.z, values);
-    RgbD result(0.0);
-    for (std::size_t i = 0; i < coefficients_.size(); ++i) result += values[i] * coefficients_[i];
-    return result;
+    // Four sums at a time: one alone would wait for its own additions.
+    std::array<RgbD, 4> sums{RgbD(0.0), RgbD(0.0), RgbD(0.0), RgbD(0.0)};
+    const std::size_t size = coefficients_.size();
+    std::size_t i = 0;
+    for (; i + 4 <= size; i += 4) {
+      for (std::size_t k = 0; k < 4; ++k) sums[k] += values[i + k] * coefficients_[i + k];
+    }
+    for (; i < size; ++i) sums[0] += values[i] * coefficients_[i];
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
   }
 
   Basis<double> basis_;

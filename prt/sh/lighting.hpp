@@ -32,20 +32,20 @@ enum class Window { none, hann, lanczos, gauss, laplacian };
 [[nodiscard]] ShRgb windowed(ShRgb function, Window window, double lambda = 0.0);
 
 /// c_lm = integral over the sphere of L(w) y_lm(w) dw, in world axes.
-///   constant, suns  closed forms
-///   lat-long        texels as regions of constant radiance, integrated exactly: error is rounding, about
-///   1e-14 cube, angular   Gauss nodes inside each texel, weights summing to its exact solid angle (cube) or
-///   to 4 pi
-///                   (angular map): relative error about 1e-9
-///   analytic        Gauss-Legendre over each hemisphere of world Y times uniform nodes, max(512, 8 bands)
-///   rows and
-///                   twice as many columns: exact to float rounding for smooth skies and for a jump at the
-///                   horizon, O(1/rows^2) for other kinks (two-lobes: see ShProjection.* tests)
-/// Same bits for any number of threads (0 = all).
-/// Cost: O(texels bands) for lat-long, O(texels bands^2) for the others; where an image's axes differ from
-/// ours O(bands^4) for turning the result.
-/// @throws InputError for an empty image, a non-finite texel (named), a rotation that is none, or bands out
-/// of range
+///
+/// - constant, suns: closed forms.
+/// - lat-long: texels as regions of constant radiance, integrated exactly: the error is rounding, 1e-14.
+/// - cube map: Gauss nodes inside each texel, weights summing to its exact solid angle: relative error below
+///   1e-9 (2e-7 for faces of a single texel).
+/// - angular map: the same over the part inside the disc, all weights summing to 4 pi: relative error 1e-8.
+/// - analytic: Gauss-Legendre over each hemisphere of the sky's Y times uniform nodes, max(512, 8 bands) rows
+///   and twice as many columns: float rounding for smooth skies and for a jump at the horizon, O(1/rows^2)
+///   for other kinks (two-lobes: below 1e-6 for up to 20 bands).
+///
+/// Same bits for any number of threads (0 = all). Cost: O(texels bands) for lat-long, O(texels bands^2) for
+/// the others, and O(bands^4) for turning lat-long and analytic results into world axes.
+/// @throws InputError for an empty image, a non-finite texel (named), a matrix that is no rotation, or bands
+/// out of range
 [[nodiscard]] ShRgb project_radiance(const light::Environment& environment, int bands, int threads = 0);
 
 /// The band-limited light as an environment, so that the path tracer can be lit by exactly what PRT sees.

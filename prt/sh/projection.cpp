@@ -44,13 +44,14 @@ Coefficients sum_in_blocks(std::size_t count, int bands, int threads,
 //
 // In a frame whose z is the grid's polar axis, y_lm = Q_lm(theta) cos(m phi) and y_l,-m = Q_lm(theta) sin(m
 // phi), where Q_lm(theta) = y_lm(theta, phi = 0). For radiance that is constant over the cells of a grid the
-// integral separates:
+// integral separates into
 //
-//   c_l,+-m = sum over rows of [integral of Q_lm sin(theta) d theta] * [sum over columns of L * integral of
-//   cos|sin(m phi)]
+//   c_l,+-m = sum over rows of q_lm(row) f_+-m(row),
+//   q_lm = integral over the row of Q_lm sin(theta) d theta,
+//   f_+-m = sum over columns of L * integral over the column of cos(m phi) or sin(m phi) d phi.
 //
-// The second factor is 2 m + 1 moments a row, whatever the degree; the first is known before the image is
-// read. The result is then turned from the grid's frame to the world.
+// f is 2 bands - 1 numbers a row, whatever the degree. The result is then turned from the grid's frame to the
+// world.
 
 /// A circle of constant colatitude, with the weight of its point in the integral over theta.
 struct Ring {

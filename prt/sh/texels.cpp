@@ -9,7 +9,7 @@
 namespace plumbline::sh {
 namespace {
 
-constexpr int kMaxGaussCount = 32;
+constexpr int kMaxGaussCount = 2000;
 
 void require_texel(int size, int x, int y) {
   if (size < 1 || x < 0 || y < 0 || x >= size || y >= size) {

@@ -8,8 +8,8 @@
 
 namespace plumbline::sh {
 
-/// Number of Gauss points that integrates cos(phase t) over -1/2 <= t <= 1/2 to the relative `tolerance`, 2
-/// … 32.
+/// Number of Gauss points, 2 to 2000, that integrates cos(phase t) over -1/2 <= t <= 1/2 to the relative
+/// `tolerance`.
 [[nodiscard]] int gauss_count(double phase, double tolerance);
 
 /// Solid angle [sr] of texel (x, y) of a cube face of size x size texels, in closed form.
