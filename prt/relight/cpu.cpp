@@ -1,0 +1,104 @@
+#include "prt/relight/cpu.hpp"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "reference/base/error.hpp"
+#include "reference/base/parallel.hpp"
+#include "reference/trace/ray_caster.hpp"
+#include "reference/trace/surface_point.hpp"
+
+namespace plumbline::relight {
+namespace {
+
+double dot_channel(std::span<const float> transfer, const sh::ShRgb& lighting, int channel) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < transfer.size(); ++i) {
+    sum += static_cast<double>(transfer[i]) * lighting.coefficients[i][channel];
+  }
+  return sum;
+}
+
+/// Everything one camera ray adds to its pixel.
+struct Seen {
+  Rgb radiance{0.0F};
+  Rgb background{0.0F};
+  Rgb albedo{0.0F};
+};
+
+Seen look(const trace::RayCaster& caster, const scene::Scene& scene,
+          const std::vector<Rgb>& unit_albedo_radiance, const trace::Ray& ray,
+          const std::function<Rgb(const Vec3&)>& background) {
+  const std::optional<trace::Hit> hit = caster.closest_hit(ray);
+  if (!hit) {
+    const Rgb sky = background ? background(ray.direction) : Rgb(0.0F);
+    return {sky, sky, Rgb(0.0F)};
+  }
+  if (!trace::surface_hit(scene, *hit, ray.direction).is_front) return {};
+  const glm::uvec3 corners = scene.triangles[hit->triangle];
+  const Vec2 b = hit->barycentrics;
+  const Rgb unit = (1.0F - b.x - b.y) * unit_albedo_radiance[corners.x] +
+                   b.x * unit_albedo_radiance[corners.y] + b.y * unit_albedo_radiance[corners.z];
+  const Rgb albedo = scene::albedo_at(scene, hit->triangle, b);
+  return {albedo * unit, Rgb(0.0F), albedo};
+}
+
+}  // namespace
+
+std::vector<Rgb> unit_albedo_exit_radiance(const transfer::Transfer& transfer, const sh::ShRgb& lighting) {
+  if (lighting.bands < transfer.bands) {
+    throw InputError(
+        fmt::format("lighting: {} bands are fewer than the transfer's {}", lighting.bands, transfer.bands));
+  }
+  std::vector<Rgb> result(transfer.vertices);
+  for (std::size_t v = 0; v < result.size(); ++v) {
+    for (int c = 0; c < 3; ++c)
+      result[v][c] = static_cast<float>(dot_channel(transfer.vector(v, c), lighting, c));
+  }
+  return result;
+}
+
+image::LayeredImage render_view(const scene::Scene& scene, const std::vector<Rgb>& unit_albedo_radiance,
+                                const scene::Camera& camera, const ViewSettings& settings,
+                                const std::function<Rgb(const Vec3&)>& background) {
+  if (settings.width < 1 || settings.height < 1 || settings.grid < 1) {
+    throw InputError(fmt::format("size: expected at least 1x1 with 1 ray a pixel, got {}x{} with {}",
+                                 settings.width, settings.height, settings.grid * settings.grid));
+  }
+  const trace::RayCaster caster(scene);
+  image::Image mean = image::make_image(settings.width, settings.height);
+  image::Image sky = mean;
+  image::Image albedo = mean;
+  parallel_for(static_cast<std::size_t>(settings.height), settings.threads, [&](std::size_t row) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < settings.width; ++x) {
+      RgbD sums[3] = {};
+      for (int k = 0; k < settings.grid * settings.grid; ++k) {
+        const float step = 1.0F / static_cast<float>(settings.grid);
+        const float dx = (static_cast<float>(k % settings.grid) + 0.5F) * step;
+        const float dy = (static_cast<float>(k / settings.grid) + 0.5F) * step;
+        const Vec3 direction = scene::ray_direction(
+            camera, static_cast<float>(x) + dx, static_cast<float>(y) + dy, settings.width, settings.height);
+        const Seen seen = look(caster, scene, unit_albedo_radiance, {camera.eye, direction}, background);
+        sums[0] += RgbD(seen.radiance);
+        sums[1] += RgbD(seen.background);
+        sums[2] += RgbD(seen.albedo);
+      }
+      const double rays = settings.grid * settings.grid;
+      mean.at(x, y) = Rgb(sums[0] / rays);
+      sky.at(x, y) = Rgb(sums[1] / rays);
+      albedo.at(x, y) = Rgb(sums[2] / rays);
+    }
+  });
+  image::LayeredImage result{settings.width, settings.height, {}, {}};
+  image::set_rgb_layer(result, "", mean);
+  image::set_rgb_layer(result, "emission", sky);
+  image::set_rgb_layer(result, "albedo", albedo);
+  result.channels["samples"].assign(mean.pixels.size(), static_cast<float>(settings.grid * settings.grid));
+  return result;
+}
+
+}  // namespace plumbline::relight

@@ -1,0 +1,37 @@
+// prt/relight/cpu.hpp: light times transfer, on the CPU.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "prt/sh/lighting.hpp"
+#include "prt/transfer/transfer.hpp"
+#include "reference/image/exr.hpp"
+#include "reference/scene/camera.hpp"
+#include "reference/scene/scene.hpp"
+
+namespace plumbline::relight {
+
+/// Exit radiance for unit albedo at every vertex: sum_i T_i l_i, one dot product a channel. May be negative:
+/// a band-limited light is. Lighting with more bands than the transfer is truncated to the transfer's.
+/// @throws InputError when the lighting has fewer bands than the transfer.
+[[nodiscard]] std::vector<Rgb> unit_albedo_exit_radiance(const transfer::Transfer& transfer,
+                                                         const sh::ShRgb& lighting);
+
+struct ViewSettings {
+  int width = 256;
+  int height = 256;
+  int grid = 4;  // grid x grid rays a pixel, at the centres of equal cells
+  int threads = 0;
+};
+
+/// The scene through a camera: vertex values interpolated over each triangle times the albedo of the point,
+/// box filter of one pixel, `background` where nothing is met (none: black). Channels as in
+/// CONVENTIONS.md#images: R G B, samples, emission (the background), albedo. A single-sided surface is black
+/// from behind, and so is a double-sided one: the bake knows the front only.
+[[nodiscard]] image::LayeredImage render_view(const scene::Scene& scene,
+                                              const std::vector<Rgb>& unit_albedo_radiance,
+                                              const scene::Camera& camera, const ViewSettings& settings,
+                                              const std::function<Rgb(const Vec3& direction)>& background);
+
+}  // namespace plumbline::relight

@@ -1,0 +1,49 @@
+#include "prt/transfer/directions.hpp"
+
+#include <cmath>
+
+namespace plumbline::transfer {
+namespace {
+
+std::uint64_t next_random(std::uint64_t& state) {
+  // Marsaglia's xorshift64*, Vigna 2016; the state is never 0 here because it starts from an odd multiple.
+  state ^= state >> 12U;
+  state ^= state << 25U;
+  state ^= state >> 27U;
+  return state * 0x2545F4914F6CDD1DULL;
+}
+
+double to_unit(std::uint64_t bits) {
+  return static_cast<double>(bits >> 11U) * 0x1p-53;
+}
+
+}  // namespace
+
+glm::dvec2 shifted_lattice_point(std::uint64_t i, const glm::dvec2& shift) {
+  // 1 / p and 1 / p^2 for the real root p of p^3 = p + 1.
+  constexpr double kA = 0.7548776662466927;
+  constexpr double kB = 0.5698402909980532;
+  const double n = static_cast<double>(i);
+  const glm::dvec2 point(shift.x + n * kA, shift.y + n * kB);
+  return point - glm::floor(point);
+}
+
+glm::dvec2 random_shift(std::uint64_t seed, std::uint64_t stream, std::uint32_t randomisation) {
+  std::uint64_t state = (seed * 0x9E3779B97F4A7C15ULL) ^ (stream * 0xD1B54A32D192ED03ULL + randomisation + 1);
+  state = state * 2 + 1;
+  for (int i = 0; i < 8; ++i) (void)next_random(state);
+  const double x = to_unit(next_random(state));
+  return {x, to_unit(next_random(state))};
+}
+
+Vec3d cosine_direction(const Vec3d& normal, const glm::dvec2& u) {
+  const double sine = std::sqrt(u.y);
+  const double cosine = std::sqrt(1.0 - u.y);
+  const double azimuth = 2.0 * kPi * u.x;
+  const Vec3d helper = std::abs(normal.x) < 0.5 ? Vec3d(1.0, 0.0, 0.0) : Vec3d(0.0, 1.0, 0.0);
+  const Vec3d tangent = glm::normalize(glm::cross(helper, normal));
+  const Vec3d bitangent = glm::cross(normal, tangent);
+  return sine * std::cos(azimuth) * tangent + sine * std::sin(azimuth) * bitangent + cosine * normal;
+}
+
+}  // namespace plumbline::transfer

@@ -1,0 +1,216 @@
+#include "reference/integrate/path.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "reference/integrate/hemisphere.hpp"
+
+namespace plumbline::integrate {
+namespace {
+
+constexpr double kInvPi = 1.0 / kPi;
+
+double power_heuristic(double own, double other) {
+  const double a = own * own;
+  const double b = other * other;
+  return a / (a + b);
+}
+
+/// A surface that reflects or emits, met by a ray; none for a miss. A single-sided surface met from behind is
+/// met, but dark.
+struct Meeting {
+  trace::SurfacePoint point;
+  Rgb albedo{0.0F};
+  Rgb emission{0.0F};
+  std::uint32_t triangle = 0;
+  float distance = 0.0F;
+};
+
+std::optional<Meeting> meet(const World& world, const trace::Ray& ray) {
+  const std::optional<trace::Hit> hit = world.caster.closest_hit(ray);
+  if (!hit) return std::nullopt;
+  const trace::SurfaceHit surface = trace::surface_hit(world.scene, *hit, ray.direction);
+  Meeting meeting{surface.point, Rgb(0.0F), Rgb(0.0F), hit->triangle, hit->distance};
+  const scene::Material& material = world.scene.materials[world.scene.triangle_materials[hit->triangle]];
+  if (surface.is_front || material.is_double_sided) {
+    meeting.albedo = scene::albedo_at(world.scene, hit->triangle, hit->barycentrics);
+    meeting.emission = material.emission;
+  }
+  return meeting;
+}
+
+/// n.w, or 0 where the surface itself is in the way.
+float received_cosine(const trace::SurfacePoint& point, const Vec3& direction) {
+  if (!(glm::dot(point.geometric_normal, direction) > 0.0F)) return 0.0F;
+  return std::max(0.0F, glm::dot(point.shading_normal, direction));
+}
+
+bool is_visible(const World& world, const trace::SurfacePoint& point, const Vec3& direction, float distance) {
+  return !world.caster.is_occluded({trace::ray_origin(point, direction), direction, distance});
+}
+
+/// Both ends are lifted off their surfaces, so that neither blocks.
+bool is_mutually_visible(const World& world, const trace::SurfacePoint& a, const trace::SurfacePoint& b) {
+  const Vec3 between = b.position - a.position;
+  const Vec3 origin = trace::ray_origin(a, between);
+  const Vec3 segment = trace::ray_origin(b, -between) - origin;
+  const float length = glm::length(segment);
+  return !world.caster.is_occluded({origin, segment / length, length});
+}
+
+RgbD sky_by_light(const World& world, const trace::SurfacePoint& point, const Vec2& u) {
+  const std::optional<light::DirectionSample> sample = world.environment_sampler.sample(u);
+  if (!sample || is_black(sample->radiance)) return RgbD(0.0);
+  const double cosine = received_cosine(point, sample->direction);
+  if (!(cosine > 0.0)) return RgbD(0.0);
+  if (!is_visible(world, point, sample->direction, std::numeric_limits<float>::infinity())) return RgbD(0.0);
+  const double weight = power_heuristic(sample->pdf, cosine * kInvPi);
+  return RgbD(sample->radiance) * (weight * cosine / sample->pdf);
+}
+
+RgbD emitters_by_light(const World& world, const trace::SurfacePoint& point, float pick, const Vec2& u) {
+  const std::optional<EmitterSample> sample = world.emitters.sample(point.position, pick, u);
+  if (!sample) return RgbD(0.0);
+  const double cosine = received_cosine(point, sample->direction);
+  if (!(cosine > 0.0)) return RgbD(0.0);
+  if (!is_mutually_visible(world, point, sample->on_emitter)) return RgbD(0.0);
+  const double weight = power_heuristic(sample->pdf, cosine * kInvPi);
+  return RgbD(sample->radiance) * (weight * cosine / sample->pdf);
+}
+
+/// One of the lights without extent, drawn in proportion to what it would send without obstacles.
+RgbD punctual_by_light(const World& world, const trace::SurfacePoint& point, float pick) {
+  const auto unshadowed = [&](const light::PunctualLight& light) {
+    const light::PunctualSample sample = light::incident_from(light, point.position);
+    return static_cast<double>(max_component(sample.irradiance)) *
+           static_cast<double>(received_cosine(point, sample.direction));
+  };
+  double total = 0.0;
+  for (const light::PunctualLight& light : world.scene.lights) total += unshadowed(light);
+  if (!(total > 0.0)) return RgbD(0.0);
+  double remaining = static_cast<double>(pick) * total;
+  const light::PunctualLight* chosen = nullptr;
+  double weight = 0.0;
+  for (const light::PunctualLight& light : world.scene.lights) {
+    const double power = unshadowed(light);
+    if (!(power > 0.0)) continue;
+    chosen = &light;
+    weight = power;
+    if (remaining < power) break;
+    remaining -= power;
+  }
+  const light::PunctualSample sample = light::incident_from(*chosen, point.position);
+  if (!is_visible(world, point, sample.direction, sample.distance)) return RgbD(0.0);
+  const double cosine = received_cosine(point, sample.direction);
+  return RgbD(sample.irradiance) * (cosine * total / weight);
+}
+
+/// Irradiance straight from the lights, drawn from the lights.
+RgbD direct_by_light(const World& world, const trace::SurfacePoint& point, Sampler& sampler) {
+  RgbD sum(0.0);
+  if (world.is_sky_sampled && !world.is_sky_black) sum += sky_by_light(world, point, sampler.next_2d());
+  if (!world.emitters.is_empty()) {
+    const float pick = sampler.next_1d();
+    sum += emitters_by_light(world, point, pick, sampler.next_2d());
+  }
+  if (!world.scene.lights.empty()) sum += punctual_by_light(world, point, sampler.next_1d());
+  return sum;
+}
+
+/// The environment seen along a cosine-distributed direction of density `pdf`: irradiance estimate pi L,
+/// weighted.
+RgbD sky_by_direction(const World& world, const Vec3& direction, double pdf) {
+  if (world.is_sky_black) return RgbD(0.0);
+  const double weight =
+      world.is_sky_sampled ? power_heuristic(pdf, world.environment_sampler.pdf(direction)) : 1.0;
+  return RgbD(light::radiance(world.environment, direction)) * (kPi * weight);
+}
+
+RgbD emitter_by_direction(const World& world, const Meeting& meeting, const Vec3& direction, double pdf) {
+  if (is_black(meeting.emission)) return RgbD(0.0);
+  const float cos_emitter = -glm::dot(meeting.point.geometric_normal, direction);
+  const double light_pdf = world.emitters.pdf(meeting.triangle, meeting.distance, cos_emitter);
+  return RgbD(meeting.emission) * (kPi * power_heuristic(pdf, light_pdf));
+}
+
+/// Probability to go on. Never more than the light that is left, and a little less than 1 for ever in a white
+/// room.
+float survival(const Rgb& throughput, int bounce) {
+  constexpr int kPatience = 8;
+  const float limit = bounce < kPatience ? 1.0F : 0.98F;
+  return std::min(max_component(throughput), limit);
+}
+
+void add(BounceTerms& terms, int bounce, const RgbD& value) {
+  const auto slot = static_cast<std::size_t>(bounce);
+  if (terms.size() <= slot) terms.resize(slot + 1, RgbD(0.0));
+  terms[slot] += value;
+}
+
+}  // namespace
+
+void add_irradiance(const World& world, const trace::SurfacePoint& start, int max_bounces, Sampler& sampler,
+                    BounceTerms& terms) {
+  trace::SurfacePoint point = start;
+  Rgb throughput(1.0F);
+  for (int bounce = 0;; ++bounce) {
+    // 1. Light drawn from the lights.
+    add(terms, bounce, RgbD(throughput) * direct_by_light(world, point, sampler));
+
+    // 2. A direction in proportion to the cosine; below the surface nothing arrives.
+    const Vec3 direction = sample_cosine_hemisphere(point.shading_normal, sampler.next_2d());
+    const double cosine = received_cosine(point, direction);
+    if (!(cosine > 0.0)) return;
+    const double pdf = cosine * kInvPi;
+    const trace::Ray ray{trace::ray_origin(point, direction), direction};
+
+    // 3. On the last bounce only an emitter could still matter: without any, whether the sky is seen is
+    // enough.
+    const bool is_last = bounce == max_bounces;
+    if (is_last && world.emitters.is_empty()) {
+      if (!world.is_sky_black && !world.caster.is_occluded(ray)) {
+        add(terms, bounce, RgbD(throughput) * sky_by_direction(world, direction, pdf));
+      }
+      return;
+    }
+    const std::optional<Meeting> meeting = meet(world, ray);
+
+    // 4. Light met by that direction.
+    if (!meeting) {
+      add(terms, bounce, RgbD(throughput) * sky_by_direction(world, direction, pdf));
+      return;
+    }
+    add(terms, bounce, RgbD(throughput) * emitter_by_direction(world, *meeting, direction, pdf));
+    if (is_last) return;
+
+    // 5. On to the next vertex: (albedo / pi) E cos / pdf = albedo E, then Russian roulette.
+    throughput *= meeting->albedo;
+    const float probability = survival(throughput, bounce);
+    if (sampler.next_1d() >= probability) return;
+    throughput /= probability;
+    point = meeting->point;
+  }
+}
+
+CameraSample sample_radiance(const World& world, const trace::Ray& ray, int max_bounces, Sampler& sampler,
+                             BounceTerms& terms) {
+  CameraSample result;
+  terms.clear();
+  const std::optional<Meeting> meeting = meet(world, ray);
+  if (!meeting) {
+    result.emission = light::radiance(world.environment, ray.direction);
+    return result;
+  }
+  result.emission = meeting->emission;
+  result.albedo = meeting->albedo;
+  result.point = meeting->point;
+  result.distance = meeting->distance;
+  result.is_hit = true;
+  if (is_black(result.albedo)) return result;
+  add_irradiance(world, meeting->point, max_bounces, sampler, terms);
+  for (RgbD& term : terms) term *= RgbD(result.albedo) * kInvPi;
+  return result;
+}
+
+}  // namespace plumbline::integrate

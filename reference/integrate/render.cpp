@@ -1,0 +1,273 @@
+#include "reference/integrate/render.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "reference/base/error.hpp"
+#include "reference/base/parallel.hpp"
+#include "reference/integrate/film.hpp"
+#include "reference/integrate/shards.hpp"
+
+namespace plumbline::integrate {
+namespace {
+
+constexpr int kTile = 16;
+constexpr std::size_t kBounceLayers = 16;  // bounce0 … bounce15, the rest together
+constexpr int kMaxSide = 1 << 15;
+
+/// Per-pixel sums of everything that has no standard error of its own.
+struct Extras {
+  RgbD emission{0.0};
+  RgbD albedo{0.0};
+  Vec3d normal{0.0};
+  Vec3d position{0.0};
+  double depth = 0.0;
+  std::int64_t hits = 0;
+  std::int64_t samples = 0;
+};
+
+struct Film {
+  int width = 0;
+  int height = 0;
+  std::vector<RgbEstimate> radiance;
+  std::vector<Extras> extras;                  // empty when no layer needs it
+  std::vector<std::vector<RgbD>> bounce_sums;  // [layer][pixel]
+};
+
+struct Tile {
+  int x0, y0, x1, y1;
+};
+
+std::vector<Tile> tiles_of(const RenderSettings& settings) {
+  std::vector<Tile> tiles;
+  int number = 0;
+  for (int y = 0; y < settings.height; y += kTile) {
+    for (int x = 0; x < settings.width; x += kTile) {
+      if (number++ % settings.shard.count != settings.shard.index) continue;
+      tiles.push_back({x, y, std::min(x + kTile, settings.width), std::min(y + kTile, settings.height)});
+    }
+  }
+  return tiles;
+}
+
+bool needs_extras(const Layers& layers) {
+  return layers.emission || layers.albedo || layers.normal || layers.position || layers.depth;
+}
+
+std::size_t bounce_layers(const RenderSettings& settings) {
+  if (!settings.layers.bounces) return 0;
+  if (settings.max_bounces >= static_cast<int>(kBounceLayers)) return kBounceLayers + 1;
+  return static_cast<std::size_t>(settings.max_bounces) + 1;
+}
+
+Film make_film(const RenderSettings& settings) {
+  const auto pixels = static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height);
+  Film film{settings.width, settings.height, std::vector<RgbEstimate>(pixels), {}, {}};
+  if (needs_extras(settings.layers)) film.extras.resize(pixels);
+  film.bounce_sums.assign(bounce_layers(settings), std::vector<RgbD>(pixels, RgbD(0.0)));
+  return film;
+}
+
+void add_extras(Extras& extras, const CameraSample& sample) {
+  ++extras.samples;
+  extras.emission += RgbD(sample.emission);
+  extras.albedo += RgbD(sample.albedo);
+  if (!sample.is_hit) return;
+  ++extras.hits;
+  extras.normal += Vec3d(sample.point.shading_normal);
+  extras.position += Vec3d(sample.point.position);
+  extras.depth += static_cast<double>(sample.distance);
+}
+
+void render_pixel(const World& world, const scene::Camera& camera, const RenderSettings& settings, int round,
+                  int samples, int x, int y, BounceTerms& terms, Film& film) {
+  const std::size_t pixel =
+      static_cast<std::size_t>(y) * static_cast<std::size_t>(film.width) + static_cast<std::size_t>(x);
+  RandomisedMean mean(samples);
+  for (int s = 0; s < samples; ++s) {
+    const SamplePlace place = sample_place(round, samples, s);
+    Sampler sampler(settings.seed, pixel, place.randomisation, place.index);
+    const Vec2 jitter = sampler.next_2d();
+    const Vec3 direction = scene::ray_direction(camera, static_cast<float>(x) + jitter.x,
+                                                static_cast<float>(y) + jitter.y, film.width, film.height);
+    const CameraSample seen =
+        sample_radiance(world, {camera.eye, direction}, settings.max_bounces, sampler, terms);
+    RgbD sum(seen.emission);
+    for (const RgbD& term : terms) sum += term;
+    mean.add(s, sum);
+    if (!film.extras.empty()) add_extras(film.extras[pixel], seen);
+    if (film.bounce_sums.empty()) continue;
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+      film.bounce_sums[std::min(k, film.bounce_sums.size() - 1)][pixel] += terms[k];
+    }
+  }
+  film.radiance[pixel] = combined(film.radiance[pixel], mean.estimate());
+}
+
+void render_round(const World& world, const scene::Camera& camera, const RenderSettings& settings, int round,
+                  int samples, const std::function<void(double)>& progress, Film& film) {
+  const std::vector<Tile> tiles = tiles_of(settings);
+  std::atomic<std::size_t> done{0};
+  parallel_for(tiles.size(), settings.threads, [&](std::size_t t) {
+    BounceTerms terms;
+    for (int y = tiles[t].y0; y < tiles[t].y1; ++y) {
+      for (int x = tiles[t].x0; x < tiles[t].x1; ++x) {
+        render_pixel(world, camera, settings, round, samples, x, y, terms, film);
+      }
+    }
+    if (progress) progress(static_cast<double>(done.fetch_add(1) + 1) / static_cast<double>(tiles.size()));
+  });
+}
+
+struct ImageError {
+  double mean = 0.0;
+  double relative = 0.0;
+};
+
+ImageError image_error(const Film& film) {
+  double sum = 0.0;
+  double variance = 0.0;
+  for (const RgbEstimate& pixel : film.radiance) {
+    sum += pixel.mean.x + pixel.mean.y + pixel.mean.z;
+    variance += glm::dot(pixel.standard_error, pixel.standard_error);
+  }
+  const double values = 3.0 * static_cast<double>(film.radiance.size());
+  const double root = std::sqrt(variance / values);
+  const double mean = sum / values;
+  if (root == 0.0) return {mean, 0.0};
+  return {mean, mean > 0.0 ? root / mean : std::numeric_limits<double>::infinity()};
+}
+
+void require_valid(const RenderSettings& s) {
+  if (s.width < 1 || s.height < 1 || s.width > kMaxSide || s.height > kMaxSide) {
+    throw InputError(
+        fmt::format("size: expected 1x1 to {}x{}, got {}x{}", kMaxSide, kMaxSide, s.width, s.height));
+  }
+  if (s.samples_per_pixel < 1)
+    throw InputError(fmt::format("samples per pixel: expected at least 1, got {}", s.samples_per_pixel));
+  if (s.max_bounces < 0) throw InputError(fmt::format("bounces: expected 0 or more, got {}", s.max_bounces));
+  if (s.target_error && !(*s.target_error > 0.0))
+    throw InputError(fmt::format("target error: expected > 0, got {}", *s.target_error));
+  if (s.max_seconds && !(*s.max_seconds > 0.0))
+    throw InputError(fmt::format("seconds: expected > 0, got {}", *s.max_seconds));
+  if (s.shard.count < 1 || s.shard.index < 0 || s.shard.index >= s.shard.count) {
+    throw InputError(
+        fmt::format("shard: expected i/N with 0 <= i < N, got {}/{}", s.shard.index, s.shard.count));
+  }
+  if (s.shard.count > 1 && (s.target_error || s.max_seconds)) {
+    throw InputError(
+        "shard: a part cannot know the whole image's error or share its time; give a sample count instead");
+  }
+}
+
+void put_pixel_layer(image::LayeredImage& out, const std::string& layer, const char* components,
+                     std::size_t pixel, const Vec3d& value) {
+  for (int c = 0; c < 3; ++c) out.channels[layer + components[c]][pixel] = static_cast<float>(value[c]);
+}
+
+image::LayeredImage develop(const Film& film, const RenderSettings& settings) {
+  image::LayeredImage out{film.width, film.height, {}, {}};
+  const std::size_t pixels = film.radiance.size();
+  const auto make = [&](const std::string& layer, const char* components) {
+    for (int c = 0; c < 3; ++c) out.channels[layer + components[c]].resize(pixels);
+  };
+  make("", "RGB");
+  make("stderr.", "RGB");
+  out.channels["samples"].resize(pixels);
+  const Layers& layers = settings.layers;
+  if (layers.emission) make("emission.", "RGB");
+  if (layers.albedo) make("albedo.", "RGB");
+  if (layers.normal) make("normal.", "XYZ");
+  if (layers.position) make("position.", "XYZ");
+  if (layers.depth) out.channels["depth"].resize(pixels);
+  std::vector<std::string> bounce_names;
+  for (std::size_t k = 0; k < film.bounce_sums.size(); ++k) {
+    bounce_names.push_back(k < kBounceLayers ? fmt::format("bounce{}.", k) : "bounceRest.");
+    make(bounce_names.back(), "RGB");
+  }
+  for (std::size_t p = 0; p < pixels; ++p) {
+    const RgbEstimate& estimate = film.radiance[p];
+    put_pixel_layer(out, "", "RGB", p, estimate.mean);
+    put_pixel_layer(out, "stderr.", "RGB", p, estimate.standard_error);
+    out.channels["samples"][p] = static_cast<float>(estimate.samples);
+    const double n = std::max(1.0, static_cast<double>(estimate.samples));
+    for (std::size_t k = 0; k < bounce_names.size(); ++k)
+      put_pixel_layer(out, bounce_names[k], "RGB", p, film.bounce_sums[k][p] / n);
+    if (film.extras.empty()) continue;
+    const Extras& extras = film.extras[p];
+    const double hits = std::max(1.0, static_cast<double>(extras.hits));
+    if (layers.emission) put_pixel_layer(out, "emission.", "RGB", p, extras.emission / n);
+    if (layers.albedo) put_pixel_layer(out, "albedo.", "RGB", p, extras.albedo / n);
+    if (layers.normal) put_pixel_layer(out, "normal.", "XYZ", p, extras.normal / hits);
+    if (layers.position) put_pixel_layer(out, "position.", "XYZ", p, extras.position / hits);
+    if (layers.depth) out.channels["depth"][p] = static_cast<float>(extras.depth / hits);
+  }
+  return out;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Samples of the next round: towards the target, at most four times what there is, within the time left; 0 =
+/// stop.
+int next_round(const RenderSettings& settings, std::int64_t done, double relative_error, double seconds) {
+  constexpr double kMaxRound = 1 << 20;
+  double wanted = 3.0 * static_cast<double>(done);
+  if (settings.target_error) {
+    const double ratio = relative_error / *settings.target_error;
+    const double missing = static_cast<double>(done) * (ratio * ratio - 1.0);
+    if (std::isfinite(missing)) wanted = std::min(wanted, 1.1 * missing);
+  }
+  wanted = std::clamp(std::ceil(wanted), static_cast<double>(kRandomisations), kMaxRound);
+  if (settings.max_seconds) {
+    const double rate = static_cast<double>(done) / std::max(seconds, 1e-6);
+    const double affordable = std::floor((*settings.max_seconds - seconds) * rate);
+    if (affordable < 1.0) return 0;
+    wanted = std::min(wanted, affordable);
+  }
+  return static_cast<int>(wanted);
+}
+
+}  // namespace
+
+RenderResult render(const World& world, const scene::Camera& camera, const RenderSettings& settings) {
+  require_valid(settings);
+  const auto start = std::chrono::steady_clock::now();
+  Film film = make_film(settings);
+  RenderResult result;
+  const bool is_progressive = settings.target_error.has_value() || settings.max_seconds.has_value();
+  int samples = is_progressive ? (settings.max_seconds ? 2 : kRandomisations) : settings.samples_per_pixel;
+  for (int round = 0; samples > 0; ++round) {
+    const auto progress = [&](double fraction) {
+      if (settings.progress && !is_progressive) settings.progress(fraction);
+    };
+    render_round(world, camera, settings, round, samples, progress, film);
+    result.samples_per_pixel += samples;
+    result.seconds = seconds_since(start);
+    const ImageError error = image_error(film);
+    result.relative_error = error.relative;
+    result.mean_radiance = error.mean;
+    if (!is_progressive) break;
+    if (settings.target_error && error.relative <= *settings.target_error) {
+      result.stop = StopReason::target_error;
+      break;
+    }
+    result.stop = StopReason::max_seconds;
+    samples = next_round(settings, result.samples_per_pixel, error.relative, result.seconds);
+    if (settings.progress) {
+      const double by_time = settings.max_seconds ? result.seconds / *settings.max_seconds : 0.0;
+      const double ratio = settings.target_error ? *settings.target_error / error.relative : 0.0;
+      settings.progress(std::min(1.0, std::max(by_time, ratio * ratio)));
+    }
+  }
+  result.image = develop(film, settings);
+  return result;
+}
+
+}  // namespace plumbline::integrate

@@ -1,0 +1,35 @@
+// reference/integrate/sampler.hpp: the random numbers of the path tracer.
+// [1] Sobol' 1967; [2] Owen, "Randomly permuted (t,m,s)-nets", 1995; [3] Burley, "Practical hash-based Owen
+// scrambling",
+//     JCGT 9(4), 2020; [4] Laine & Karras, "Stratified sampling for stochastic transparency", EGSR 2011.
+#pragma once
+
+#include <cstdint>
+
+#include "reference/base/vector.hpp"
+
+namespace plumbline::integrate {
+
+/// A counted source of uniform numbers: the value depends only on (seed, stream, randomisation, index, how
+/// many were drawn), never on threads or time. For one (seed, stream, randomisation) and one pair of
+/// dimensions the points of index = 0 … 2^k - 1 are an Owen-scrambled (0, 2)-sequence of Sobol' [1-3]; pairs
+/// are independent of each other
+/// ("padding"), and so are randomisations and streams.
+class Sampler {
+ public:
+  Sampler(std::uint64_t seed, std::uint64_t stream, std::uint32_t randomisation, std::uint32_t index);
+
+  /// In [0, 1)^2.
+  [[nodiscard]] Vec2 next_2d();
+  [[nodiscard]] float next_1d();
+
+ private:
+  std::uint64_t key_;
+  std::uint32_t reversed_index_;
+  std::uint32_t dimension_ = 0;
+};
+
+/// 64-bit mixing (the finaliser of SplitMix64): a bijection whose output bits look independent.
+[[nodiscard]] std::uint64_t mix(std::uint64_t value);
+
+}  // namespace plumbline::integrate

@@ -1,0 +1,126 @@
+#include "reference/trace/ray_caster.hpp"
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#define PLUMBLINE_EMBREE 4
+#else
+#include <embree3/rtcore.h>
+#define PLUMBLINE_EMBREE 3
+#endif
+
+#include <cstring>
+#include <string>
+
+#include "reference/base/error.hpp"
+
+namespace plumbline::trace {
+namespace {
+
+// Embree's own error codes as one line. No exception may pass through its C frames, so every call is followed
+// by this.
+void throw_on_error(RTCDevice device, const char* where) {
+  const RTCError error = rtcGetDeviceError(device);
+  if (error == RTC_ERROR_NONE) return;
+  const char* reason = error == RTC_ERROR_OUT_OF_MEMORY     ? "out of memory"
+                       : error == RTC_ERROR_UNSUPPORTED_CPU ? "this processor is not supported"
+                       : error == RTC_ERROR_CANCELLED       ? "cancelled"
+                                                            : "invalid use";
+  throw DeviceError(std::string("Embree: ") + where + ": " + reason);
+}
+
+RTCRay make_ray(const Ray& ray) {
+  RTCRay result;
+  result.org_x = ray.origin.x;
+  result.org_y = ray.origin.y;
+  result.org_z = ray.origin.z;
+  result.tnear = 0.0F;
+  result.dir_x = ray.direction.x;
+  result.dir_y = ray.direction.y;
+  result.dir_z = ray.direction.z;
+  result.time = 0.0F;
+  result.tfar = ray.max_distance;
+  result.mask = 0xFFFFFFFFU;
+  result.id = 0;
+  result.flags = 0;
+  return result;
+}
+
+// Embree reads shared vertex buffers in 16-byte steps, so it gets its own padded copy.
+void copy_positions(RTCGeometry geometry, const scene::Scene& scene) {
+  auto* out = static_cast<float*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), scene.positions.size()));
+  if (out == nullptr) throw DeviceError("Embree: vertices: out of memory");
+  std::memcpy(out, scene.positions.data(), scene.positions.size() * sizeof(Vec3));
+}
+
+void copy_triangles(RTCGeometry geometry, const scene::Scene& scene) {
+  auto* out = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0,
+                                                                  RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t),
+                                                                  scene.triangles.size()));
+  if (out == nullptr) throw DeviceError("Embree: triangles: out of memory");
+  std::memcpy(out, scene.triangles.data(), scene.triangles.size() * sizeof(glm::uvec3));
+}
+
+}  // namespace
+
+struct RayCaster::Impl {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+
+  Impl() = default;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
+    if (scene != nullptr) rtcReleaseScene(scene);
+    if (device != nullptr) rtcReleaseDevice(device);
+  }
+};
+
+RayCaster::RayCaster(const scene::Scene& scene) : impl_(std::make_unique<Impl>()) {
+  impl_->device = rtcNewDevice(nullptr);
+  if (impl_->device == nullptr) throw_on_error(nullptr, "device");
+  impl_->scene = rtcNewScene(impl_->device);
+  throw_on_error(impl_->device, "scene");
+  RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  copy_positions(geometry, scene);
+  copy_triangles(geometry, scene);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(impl_->scene, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(impl_->scene);
+  throw_on_error(impl_->device, "building the hierarchy");
+}
+
+RayCaster::~RayCaster() = default;
+RayCaster::RayCaster(RayCaster&&) noexcept = default;
+RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
+
+std::optional<Hit> RayCaster::closest_hit(const Ray& ray) const {
+  RTCRayHit query;
+  query.ray = make_ray(ray);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+#if PLUMBLINE_EMBREE == 4
+  rtcIntersect1(impl_->scene, &query);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(impl_->scene, &context, &query);
+#endif
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  return Hit{query.hit.primID, Vec2(query.hit.u, query.hit.v), query.ray.tfar};
+}
+
+bool RayCaster::is_occluded(const Ray& ray) const {
+  RTCRay query = make_ray(ray);
+#if PLUMBLINE_EMBREE == 4
+  rtcOccluded1(impl_->scene, &query);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(impl_->scene, &context, &query);
+#endif
+  return query.tfar < 0.0F;  // Embree's mark for "something is in the way"
+}
+
+}  // namespace plumbline::trace

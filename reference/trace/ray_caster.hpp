@@ -1,0 +1,46 @@
+// reference/trace/ray_caster.hpp: the ray query; with its .cpp the only code that knows Embree.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "reference/base/vector.hpp"
+#include "reference/scene/scene.hpp"
+
+namespace plumbline::trace {
+
+struct Ray {
+  Vec3 origin{0.0F};
+  Vec3 direction{0.0F};  // unit
+  float max_distance = std::numeric_limits<float>::infinity();
+};
+
+struct Hit {
+  std::uint32_t triangle = 0;
+  Vec2 barycentrics{0.0F};  // weights of the triangle's second and third vertex
+  float distance = 0.0F;
+};
+
+/// The bounding volume hierarchy over a scene's triangles. Both faces of a triangle stop a ray.
+/// Safe to query from many threads.
+class RayCaster {
+ public:
+  /// @throws DeviceError when Embree fails.
+  explicit RayCaster(const scene::Scene& scene);
+  ~RayCaster();
+  RayCaster(RayCaster&&) noexcept;
+  RayCaster& operator=(RayCaster&&) noexcept;
+  RayCaster(const RayCaster&) = delete;
+  RayCaster& operator=(const RayCaster&) = delete;
+
+  [[nodiscard]] std::optional<Hit> closest_hit(const Ray& ray) const;
+  [[nodiscard]] bool is_occluded(const Ray& ray) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace plumbline::trace

@@ -1,0 +1,72 @@
+// validation/app/common.hpp: what several verbs share: scenes, lights, outputs, progress.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "reference/light/environment.hpp"
+#include "reference/scene/scene.hpp"
+
+namespace plumbline::app {
+
+/// Exit codes of the command.
+enum ExitCode : int { kSuccess = 0, kCheckFailed = 1, kBadInput = 2, kInternal = 3 };
+
+/// A verb registers itself: options on a subcommand and a callback that does the work and returns an exit
+/// code.
+using Action = std::function<int()>;
+using Register = void (*)(CLI::App& app, Action& chosen);
+
+/// SCENE, --crease, --camera.
+struct SceneOptions {
+  std::string source;
+  float crease_deg = 0.0F;
+  std::string camera;
+};
+void add_scene_options(CLI::App& verb, SceneOptions& options);
+void add_camera_option(CLI::App& verb, SceneOptions& options);
+/// Loads and warns (on stderr) of triangles left out.
+[[nodiscard]] scene::Scene load(const SceneOptions& options);
+
+/// --env, --env-layout, --rotate-env.
+struct LightOptions {
+  std::string source;
+  std::string layout = "auto";
+  std::vector<float> rotation_deg;
+};
+void add_light_options(CLI::App& verb, LightOptions& options, bool is_required);
+/// An image, a builtin:NAME, or a .json of SH coefficients (then the band-limited light itself); black when
+/// nothing was asked for. Warns (on stderr) of negative texels that were set to 0.
+[[nodiscard]] light::Environment load(const LightOptions& options);
+
+/// "WxH", both positive. @throws InputError
+struct Size {
+  int width = 256;
+  int height = 256;
+};
+[[nodiscard]] Size parse_size(const std::string& text);
+/// "all" or a number >= 0.
+[[nodiscard]] int parse_bounces(const std::string& text);
+[[nodiscard]] std::string bounces_text(int bounces);
+
+/// Writes to a file by rename, or to standard output for "-".
+void write_output(const std::string& destination, const std::string& text);
+/// Writes JSON when a destination was given. Numbers JSON cannot hold become the strings "nan", "inf",
+/// "-inf".
+void write_json(const std::string& destination, const nlohmann::json& json);
+/// A number as JSON; see write_json.
+[[nodiscard]] nlohmann::json number(double value);
+
+void warn(const std::string& message);
+
+/// A bar with the time left on standard error when that is a terminal; otherwise nothing. Safe to call from
+/// many threads.
+[[nodiscard]] std::function<void(double fraction)> progress_bar(const std::string& title);
+
+/// The value as one shell word.
+[[nodiscard]] std::string quoted(const std::string& word);
+
+}  // namespace plumbline::app

@@ -1,0 +1,216 @@
+#include "reference/integrate/render.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "pieces.hpp"
+#include "reference/base/error.hpp"
+#include "reference/image/exr.hpp"
+#include "reference/integrate/shards.hpp"
+#include "reference/scene/builtin.hpp"
+#include "reference/scene/load.hpp"
+#include "validation/metrics/statistics.hpp"
+
+namespace plumbline::integrate {
+namespace {
+
+const World& cornell() {
+  static const World world(scene::make_builtin_scene("cornell"), test::no_sky());
+  return world;
+}
+
+RenderSettings small(std::uint64_t seed) {
+  RenderSettings settings;
+  settings.width = 40;
+  settings.height = 36;
+  settings.samples_per_pixel = 32;
+  settings.seed = seed;
+  return settings;
+}
+
+bool is_bit_identical(const image::LayeredImage& a, const image::LayeredImage& b) {
+  if (a.channels.size() != b.channels.size()) return false;
+  for (const auto& [name, values] : a.channels) {
+    const auto other = b.channels.find(name);
+    if (other == b.channels.end() || other->second.size() != values.size()) return false;
+    if (std::memcmp(values.data(), other->second.data(), values.size() * sizeof(float)) != 0) return false;
+  }
+  return true;
+}
+
+TEST(Render, IsBitIdenticalForAnyNumberOfThreads) {
+  RenderSettings settings = small(1);
+  settings.layers = {true, true, true, true, true, true};
+  settings.threads = 1;
+  const RenderResult one = render(cornell(), cornell().scene.cameras[0], settings);
+  for (const int threads : {2, 7}) {
+    settings.threads = threads;
+    EXPECT_TRUE(is_bit_identical(one.image, render(cornell(), cornell().scene.cameras[0], settings).image))
+        << threads;
+  }
+  settings.seed = 2;
+  EXPECT_FALSE(is_bit_identical(one.image, render(cornell(), cornell().scene.cameras[0], settings).image));
+}
+
+TEST(Render, ShardsMergeToTheSameBits) {
+  RenderSettings settings = small(4);
+  settings.layers.bounces = true;
+  const RenderResult whole = render(cornell(), cornell().scene.cameras[0], settings);
+  for (const int count : {1, 3, 16}) {
+    std::vector<image::LayeredImage> parts;
+    std::vector<std::string> names;
+    for (int i = count - 1; i >= 0; --i) {
+      settings.shard = {i, count};
+      parts.push_back(render(cornell(), cornell().scene.cameras[0], settings).image);
+      parts.back().attributes[kShardAttribute] = std::to_string(i) + "/" + std::to_string(count);
+      names.push_back("part" + std::to_string(i));
+    }
+    EXPECT_TRUE(is_bit_identical(whole.image, merge_shards(parts, names))) << count;
+    if (count == 1) continue;
+    std::vector<image::LayeredImage> missing(parts.begin() + 1, parts.end());
+    EXPECT_THROW((void)merge_shards(missing, names), InputError);
+    std::vector<image::LayeredImage> twice = parts;
+    twice[0] = twice[1];
+    EXPECT_THROW((void)merge_shards(twice, names), InputError);
+    std::vector<image::LayeredImage> other = parts;
+    other[0].attributes["plumbline.seed"] = "9";
+    EXPECT_THROW((void)merge_shards(other, names), InputError);
+  }
+}
+
+// Two images of different seeds: the differences of 6 x 6 blocks in units of their standard errors are
+// standard normal.
+TEST(Render, TwoSeedsDifferByWhatTheirStandardErrorsSay) {
+  std::vector<double> p;
+  for (std::uint64_t pair = 0; pair < 6; ++pair) {
+    const RenderResult a = render(cornell(), cornell().scene.cameras[0], small(100 + 2 * pair));
+    const RenderResult b = render(cornell(), cornell().scene.cameras[0], small(101 + 2 * pair));
+    const auto& mean_a = a.image.channels.at("G");
+    const auto& mean_b = b.image.channels.at("G");
+    const auto& se_a = a.image.channels.at("stderr.G");
+    const auto& se_b = b.image.channels.at("stderr.G");
+    for (int by = 0; by < 36; by += 6) {
+      for (int bx = 0; bx < 36; bx += 6) {
+        double difference = 0.0;
+        double variance = 0.0;
+        for (int k = 0; k < 36; ++k) {
+          const auto i = static_cast<std::size_t>((by + k / 6) * 40 + bx + k % 6);
+          difference += static_cast<double>(mean_a[i]) - static_cast<double>(mean_b[i]);
+          variance += std::pow(static_cast<double>(se_a[i]), 2) + std::pow(static_cast<double>(se_b[i]), 2);
+        }
+        if (variance > 0.0) p.push_back(metrics::two_sided_p(difference / std::sqrt(variance)));
+      }
+    }
+  }
+  EXPECT_GE(p.size(), 180U);
+  EXPECT_GE(metrics::kolmogorov_smirnov_uniform(p).p, 1e-3);
+  // The same scores with standard errors 1.5 times too small are caught.
+  std::vector<double> wrong;
+  for (const double value : p) wrong.push_back(metrics::two_sided_p(1.5 * metrics::two_sided_z(value)));
+  EXPECT_LE(metrics::kolmogorov_smirnov_uniform(wrong).p, 1e-3);
+}
+
+TEST(Render, LayersAddUpToTheMean) {
+  RenderSettings settings = small(3);
+  settings.layers.bounces = true;
+  settings.layers.emission = true;
+  for (const int bounces : {0, 2, kAllBounces}) {
+    settings.max_bounces = bounces;
+    const image::LayeredImage image = render(cornell(), cornell().scene.cameras[0], settings).image;
+    EXPECT_EQ(image.channels.contains("bounce1.R"), bounces != 0);
+    for (std::size_t p = 0; p < image.channels.at("G").size(); ++p) {
+      double sum = image.channels.at("emission.G")[p];
+      for (const auto& [name, values] : image.channels) {
+        if (name.starts_with("bounce") && name.ends_with(".G")) sum += values[p];
+      }
+      const double mean = image.channels.at("G")[p];
+      EXPECT_LE(std::abs(sum - mean), 1e-6 * 20 * (1.0 + mean));  // 20 layers rounded to float
+    }
+  }
+}
+
+TEST(Render, TargetErrorIsReachedAndSaid) {
+  RenderSettings settings = small(5);
+  settings.target_error = 0.05;
+  const RenderResult result = render(cornell(), cornell().scene.cameras[0], settings);
+  EXPECT_EQ(result.stop, StopReason::target_error);
+  EXPECT_LE(result.relative_error, 0.05);
+  EXPECT_GT(result.relative_error, 0.01);  // and not wildly overdone
+  double variance = 0.0;
+  double mean = 0.0;
+  for (const char* c : {"R", "G", "B"}) {
+    for (const float v : result.image.channels.at(c)) mean += static_cast<double>(v);
+    for (const float v : result.image.channels.at(std::string("stderr.") + c))
+      variance += static_cast<double>(v) * static_cast<double>(v);
+  }
+  const double n = 3.0 * 40 * 36;
+  EXPECT_LE(std::abs(std::sqrt(variance / n) / (mean / n) - result.relative_error), 1e-5);
+}
+
+TEST(Render, SilhouetteOfASphereHasItsClosedForm) {
+  // D23: the fraction of a square image a sphere covers is pi R^2 / (D^2 - R^2) / (4 tan^2(f / 2)).
+  scene::Scene scene;
+  test::add_sphere(scene, Vec3(0.0F), 1.0, 256, false, test::add_material(scene, Rgb(1.0F)));
+  scene.cameras.push_back(scene::look_at({0, 0, 3}, Vec3(0.0F), {0, 1, 0}, 60.0F));
+  const World world(scene, test::no_sky());
+  RenderSettings settings;
+  settings.width = settings.height = 128;
+  settings.layers.albedo = true;
+  const image::LayeredImage image = render(world, scene.cameras[0], settings).image;
+  double covered = 0.0;
+  for (const float a : image.channels.at("albedo.G")) covered += static_cast<double>(a);
+  // About 128 * 1.9 edge pixels with a stratified error of at most 1/8 each.
+  const double sigma = std::sqrt(128.0 * 1.9) / 8.0 / (128.0 * 128.0);
+  EXPECT_LE(std::abs(covered / (128.0 * 128.0) - 0.294524311274), 4.0 * sigma + 8e-5);
+}
+
+TEST(Render, IsNotMirroredOrUpsideDown) {
+  scene::Scene scene;  // a red quad at the right, a green one at the top, seen along -z
+  test::add_quad(scene, {1, -0.2F, 0}, {0.4F, 0, 0}, {0, 0.4F, 0},
+                 test::add_material(scene, Rgb(0.0F), Rgb(1, 0, 0)));
+  test::add_quad(scene, {-0.2F, 1, 0}, {0.4F, 0, 0}, {0, 0.4F, 0},
+                 test::add_material(scene, Rgb(0.0F), Rgb(0, 1, 0)));
+  scene.cameras.push_back(scene::look_at({0, 0, 3}, Vec3(0.0F), {0, 1, 0}, 60.0F));
+  RenderSettings settings;
+  settings.width = settings.height = 60;
+  const auto image =
+      *image::rgb_layer(render(World(scene, test::no_sky()), scene.cameras[0], settings).image, "");
+  const auto column = static_cast<int>(30 + 30 * 1.2 / (3 * std::tan(kPi / 6)));
+  EXPECT_EQ(image.at(column, 30), Rgb(1, 0, 0));
+  EXPECT_EQ(image.at(30, 60 - column), Rgb(0, 1, 0));
+  EXPECT_EQ(image.at(60 - column, 30), Rgb(0.0F));
+}
+
+TEST(Render, BackFacesAreDarkAndBlock) {
+  scene::Scene scene;  // seen from behind: no emission; the same quad hides an emitter behind it
+  test::add_quad(scene, {-5, -5, 0}, {0, 10, 0}, {10, 0, 0}, test::add_material(scene, Rgb(1.0F), Rgb(1.0F)));
+  test::add_quad(scene, {-5, -5, -1}, {10, 0, 0}, {0, 10, 0},
+                 test::add_material(scene, Rgb(1.0F), Rgb(1.0F)));
+  scene.cameras.push_back(scene::look_at({0, 0, 3}, Vec3(0.0F), {0, 1, 0}, 60.0F));
+  const RenderResult result = render(World(scene, test::white_sky()), scene.cameras[0], small(1));
+  EXPECT_EQ(result.mean_radiance, 0.0);
+}
+
+TEST(Render, RefusesAbsurdSettings) {
+  const auto refuses = [](auto change) {
+    RenderSettings settings = small(0);
+    change(settings);
+    EXPECT_THROW((void)render(cornell(), cornell().scene.cameras[0], settings), InputError);
+  };
+  refuses([](RenderSettings& s) { s.width = 0; });
+  refuses([](RenderSettings& s) { s.height = -1; });
+  refuses([](RenderSettings& s) { s.samples_per_pixel = 0; });
+  refuses([](RenderSettings& s) { s.max_bounces = -1; });
+  refuses([](RenderSettings& s) { s.target_error = NAN; });
+  refuses([](RenderSettings& s) { s.max_seconds = -1.0; });
+  refuses([](RenderSettings& s) { s.shard = {2, 2}; });
+  refuses([](RenderSettings& s) {
+    s.shard = {0, 2};
+    s.target_error = 0.1;
+  });
+}
+
+}  // namespace
+}  // namespace plumbline::integrate
