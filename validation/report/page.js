@@ -288,10 +288,11 @@ const kMostWhiskers = 30;  // more points than this: a band
 
 const superscript = (n) => String(n).replace(/[-0-9]/g, (c) => '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'['-0123456789'.indexOf(c)]);
 
-function tickLabel(value) {
+// Plain where short, else with a power of ten, which a logarithmic axis turns to sooner.
+function tickLabel(value, largestPlain) {
   if (value === 0) return '0';
   const exponent = Math.floor(Math.log10(Math.abs(value)) + 1e-9);
-  if (exponent > -4 && exponent < 5) return String(Number(value.toPrecision(6)));
+  if (exponent > -4 && exponent <= largestPlain) return String(Number(value.toPrecision(6)));
   const mantissa = Number((value / 10 ** exponent).toPrecision(3));
   return (mantissa === 1 ? '' : `${mantissa}·`) + `10${superscript(exponent)}`;
 }
@@ -339,7 +340,7 @@ function axis(label, isLog, values, isHeight, ink) {
     type: isLog ? 'logarithmic' : 'linear', ...range(values, isLog, isHeight),
     title: { display: true, text: label, color: ink.muted, font: { size: 12 } },
     grid: { color: ink.grid, borderColor: ink.muted, tickColor: ink.grid },
-    ticks: { color: ink.muted, callback: tickLabel, maxRotation: 0, autoSkipPadding: 12, includeBounds: false },
+    ticks: { color: ink.muted, callback: (value) => tickLabel(value, isLog ? 3 : 5), maxRotation: 0, autoSkipPadding: 12, includeBounds: false },
     afterBuildTicks: isLog ? (scale) => { scale.ticks = logTicks(scale.min, scale.max); } : undefined,
   };
 }
