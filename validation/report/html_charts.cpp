@@ -37,9 +37,11 @@ std::string cell(const std::string& text) {
   return fmt::format("<td{}>{}</td>", is_numeric(text) ? " class=\"number\"" : "", content);
 }
 
-// A heading stands over its column: flush right where the first row holds a number.
+// A heading stands over its column: flush right where the first cell that is not empty holds a number.
 std::string heading(const std::string& text, std::size_t column, const Rows& rows) {
-  const bool is_number = !rows.empty() && column < rows.front().size() && is_numeric(rows.front()[column]);
+  const auto is_filled = [&](const auto& row) { return column < row.size() && !row[column].empty(); };
+  const auto first = std::find_if(rows.begin(), rows.end(), is_filled);
+  const bool is_number = first != rows.end() && is_numeric((*first)[column]);
   return fmt::format("<th scope=\"col\"{}>{}</th>", is_number ? " class=\"number\"" : "",
                      escape_markup(text));
 }

@@ -208,6 +208,8 @@ function moveCross(layer, pixel) {
   cross.style.top = `${100 * (pixel.y + 0.5) / layer.canvas.height}%`;
 }
 
+const kWidestBlockyStage = 384;  // the stage is about 768 wide: at twice the size pixels may show as squares
+
 // Two chosen pictures on one stage, the left one cut at the divider.
 function setUpCompare(gallery, layers, point) {
   if (layers.length < 2) return () => {};
@@ -245,7 +247,7 @@ function setUpCompare(gallery, layers, point) {
     point(pixelAt(event, stage, source.canvas.width, source.canvas.height), source);
   });
   stage.setAttribute('role', 'img');
-  stage.classList.toggle('blocky', layers[0].frame.classList.contains('blocky'));
+  stage.classList.toggle('blocky', layers[0].canvas.width <= kWidestBlockyStage);
   compare.hidden = false;
   divide();
   redraw();
@@ -286,10 +288,11 @@ const kMostWhiskers = 30;  // more points than this: a band
 
 const superscript = (n) => String(n).replace(/[-0-9]/g, (c) => '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'['-0123456789'.indexOf(c)]);
 
-function tickLabel(value) {
+// Plain where short, else with a power of ten, which a logarithmic axis turns to sooner.
+function tickLabel(value, largestPlain) {
   if (value === 0) return '0';
   const exponent = Math.floor(Math.log10(Math.abs(value)) + 1e-9);
-  if (exponent > -4 && exponent < 5) return String(Number(value.toPrecision(6)));
+  if (exponent > -4 && exponent <= largestPlain) return String(Number(value.toPrecision(6)));
   const mantissa = Number((value / 10 ** exponent).toPrecision(3));
   return (mantissa === 1 ? '' : `${mantissa}·`) + `10${superscript(exponent)}`;
 }
@@ -322,20 +325,22 @@ function pointsOf(series, chart) {
   return { points: placed, omitted };
 }
 
-// Ends of an axis: the data, intervals included, and a little air; from 0 where the data come near it.
-function range(values, isLog) {
+// Ends of an axis: the data, intervals included, and a little air; a linear height starts from 0 where the data
+// come near it.
+function range(values, isLog, isHeight) {
   const low = Math.min(...values), high = Math.max(...values);
   if (isLog) return { min: low / Math.max(1.12, (high / low) ** 0.05), max: high * Math.max(1.12, (high / low) ** 0.05) };
   const air = 0.06 * (high - low) || Math.abs(high) * 0.1 || 1;
-  return { min: low >= 0 && low < 0.4 * high ? 0 : low - air, max: high <= 0 && high > 0.4 * low ? 0 : high + air };
+  return { min: isHeight && low >= 0 && low < 0.4 * high ? 0 : low - air,
+           max: isHeight && high <= 0 && high > 0.4 * low ? 0 : high + air };
 }
 
-function axis(label, isLog, values, ink) {
+function axis(label, isLog, values, isHeight, ink) {
   return {
-    type: isLog ? 'logarithmic' : 'linear', ...range(values, isLog),
+    type: isLog ? 'logarithmic' : 'linear', ...range(values, isLog, isHeight),
     title: { display: true, text: label, color: ink.muted, font: { size: 12 } },
     grid: { color: ink.grid, borderColor: ink.muted, tickColor: ink.grid },
-    ticks: { color: ink.muted, callback: tickLabel, maxRotation: 0, autoSkipPadding: 12 },
+    ticks: { color: ink.muted, callback: (value) => tickLabel(value, isLog ? 3 : 5), maxRotation: 0, autoSkipPadding: 12, includeBounds: false },
     afterBuildTicks: isLog ? (scale) => { scale.ticks = logTicks(scale.min, scale.max); } : undefined,
   };
 }
@@ -382,13 +387,24 @@ function drawWhiskers(context, bars, colour) {
   context.stroke();
 }
 
+// The legend's sign of a reference curve.
+function dashes(colour) {
+  const sign = document.createElement('canvas');
+  sign.width = 15;
+  sign.height = 3;
+  const context = sign.getContext('2d');
+  context.fillStyle = colour;
+  for (const x of [0, 6, 12]) context.fillRect(x, 0, x < 12 ? 4 : 3, 2);
+  return sign;
+}
+
 function datasetOf(series, points, index, ink) {
   const colour = series.is_reference ? ink.muted : ink.series[index % ink.series.length];
   const isDense = points.length > kMostWhiskers;
   return {
     label: series.name, data: points, borderColor: colour, backgroundColor: colour, borderWidth: series.is_reference ? 1.5 : 2,
     borderDash: series.is_reference ? [6, 4] : [], pointRadius: series.is_reference || isDense ? 0 : 4, pointHoverRadius: 5,
-    pointStyle: series.is_reference ? 'line' : kMarkers[index % kMarkers.length], pointBorderWidth: 2,
+    pointStyle: series.is_reference ? dashes(colour) : kMarkers[index % kMarkers.length], pointBorderWidth: 2,
     order: series.is_reference ? 1 : 0,
   };
 }
@@ -405,10 +421,10 @@ function optionsOf(chart, drawn, ink) {
   return {
     animation: false, responsive: true, maintainAspectRatio: false, color: ink.text,
     font: { family: 'system-ui, sans-serif' }, interaction: { mode: 'nearest', intersect: false },
-    scales: { x: axis(chart.x_label, chart.is_x_log, visible.map((p) => p.x), ink),
-              y: axis(chart.y_label, chart.is_y_log, heights, ink) },
+    scales: { x: axis(chart.x_label, chart.is_x_log, visible.map((p) => p.x), false, ink),
+              y: axis(chart.y_label, chart.is_y_log, heights, true, ink) },
     plugins: {
-      legend: { display: drawn.length > 1, align: 'start', labels: { color: ink.text, usePointStyle: true, padding: 14 } },
+      legend: { display: drawn.length > 1, align: 'start', labels: { color: ink.text, usePointStyle: true, boxWidth: 9, boxHeight: 9, padding: 14 } },
       tooltip: { callbacks: { title: (items) => items.length ? `${chart.x_label}: ${format(items[0].raw.x)}` : '', label: tooltipLine } },
     },
   };
@@ -419,7 +435,8 @@ function drawChart(figure, ink) {
   const drawn = chart.series.map((series) => ({ series, ...pointsOf(series, chart) }));
   const omitted = drawn.reduce((sum, series) => sum + series.omitted, 0);
   const note = one(figure, '.omitted');
-  note.textContent = `${omitted} point(s) cannot be drawn on these axes (not finite${chart.is_x_log || chart.is_y_log ? ', or not positive on a logarithmic axis' : ''}); the numbers hold them.`;
+  const reason = chart.is_x_log || chart.is_y_log ? 'not finite, or not positive on a logarithmic axis' : 'not finite';
+  note.textContent = `${omitted} ${omitted === 1 ? 'point is' : 'points are'} not drawn (${reason}): see the numbers.`;
   note.hidden = omitted === 0;
   if (!drawn.some((series) => series.points.some((p) => Number.isFinite(p.y)))) { one(figure, '.plot').hidden = true; return null; }
   return new Chart(one(figure, 'canvas'), {

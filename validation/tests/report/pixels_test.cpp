@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <random>
 
+#include "reference/base/atomic_file.hpp"
 #include "reference/image/file.hpp"
 
 namespace plumbline::report {
@@ -66,8 +68,9 @@ TEST(ReportPixels, PackedPicturesComeBack) {
 
 TEST(ReportPixels, PngKeepsThePackedBytes) {
   const image::Image8 packed = pack_radiance(colourful());
-  const image::Image read = image::read_image(image::encode_png(packed), "packed.png");
-  EXPECT_EQ(image::tone_map(read).rgb, packed.rgb);
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "report_packed.png";
+  write_text_atomically(path, image::encode_png(packed));
+  EXPECT_EQ(image::tone_map(image::read_image(path)).rgb, packed.rgb);
 }
 
 TEST(ReportPixels, ShrinkKeepsTheMeanAndShowsBrokenPixels) {

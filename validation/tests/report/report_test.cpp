@@ -264,7 +264,10 @@ TEST(ReportHtml, RefusesPicturesThatAreNotTheirSize) {
   Report report;
   report.galleries = {{"g", "", {{"short", {2, 2, {Rgb(0.0F)}}}}, {}}};
   EXPECT_THROW((void)to_html(report), InputError);
-  report.galleries = {{"g", "", {}, {{"short", {2, 2, {0, 0, 0}}, 1.0, ""}}}};
+  Gallery errors_only{"g", "", {}, {}};
+  errors_only.errors.resize(1);
+  errors_only.errors[0].image = image::Image8{2, 2, {0, 0, 0}};
+  report.galleries.assign(1, errors_only);
   EXPECT_THROW((void)to_html(report), InputError);
 }
 
