@@ -273,6 +273,9 @@ void add_gallery(const std::string& name, int bands, const Pictures& p, const Im
   const Image prt = mean_of(p.prt_a, p.prt_b);
   report::Gallery gallery;
   gallery.title = name;
+  // The mean radiance of the scene a little above middle gray, in the slider's quarter stops.
+  gallery.exposure_stops =
+      static_cast<float>(std::clamp(std::round(4.0 * std::log2(0.35 / mean_radiance)) / 4.0, -10.0, 10.0));
   gallery.caption =
       "Direct light only, the environment behind. Compare PRT with the truth under the same, band-limited "
       "light: they must look the same. Against the full "
