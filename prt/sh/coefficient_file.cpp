@@ -7,6 +7,7 @@
 #include "prt/sh/lighting.hpp"
 #include "reference/base/atomic_file.hpp"
 #include "reference/base/error.hpp"
+#include "reference/base/text.hpp"
 
 namespace plumbline::sh {
 namespace {
@@ -22,11 +23,7 @@ json parse(const std::filesystem::path& path) {
   try {
     return json::parse(text);
   } catch (const json::exception& error) {
-    std::string reason = error.what();
-    for (char& c : reason) {
-      if (c == '\n' || c == '\r') c = ' ';
-    }
-    refuse(path, "not valid JSON: " + reason);
+    refuse(path, std::string("not valid JSON: ") + one_line(error.what()));
   }
 }
 

@@ -15,6 +15,18 @@ namespace plumbline {
 namespace fs = std::filesystem;
 namespace {
 
+[[noreturn]] void refuse(const fs::path& destination, const std::string& reason) {
+  const std::string name = destination.empty() ? "\"\"" : destination.string();
+  throw InputError(name + ": cannot write: " + reason);
+}
+
+// A link stays, and what it points to is replaced.
+fs::path without_links(const fs::path& destination) {
+  std::error_code error;
+  if (!fs::is_symlink(destination, error)) return destination;
+  return fs::weakly_canonical(destination, error);
+}
+
 // Same folder, so that the rename cannot cross file systems; same extension, because image writers go by it.
 fs::path temporary_beside(const fs::path& destination) {
   const std::string stem = "." + destination.stem().string() + ".partial-" + std::to_string(::getpid());
@@ -29,31 +41,37 @@ struct RemoveOnExit {
   }
 };
 
+// Permissions alone do not tell (a read-only or full disk, a name too long, /proc): make the file.
+void require_temporary(const fs::path& destination) {
+  const fs::path temporary = temporary_beside(without_links(destination));
+  const RemoveOnExit cleanup{temporary};
+  if (!std::ofstream(temporary, std::ios::binary)) refuse(destination, std::strerror(errno));
+}
+
 }  // namespace
 
 void require_writable(const fs::path& destination) {
   const fs::path folder = destination.has_parent_path() ? destination.parent_path() : fs::path(".");
   std::error_code error;
-  if (fs::is_directory(destination, error)) {
-    throw InputError(destination.string() + ": cannot write: it is a folder");
+  if (destination.empty()) refuse(destination, "the name is empty");
+  if (fs::is_directory(destination, error)) refuse(destination, "it is a folder");
+  if (fs::exists(destination, error) && !fs::is_regular_file(destination, error)) {
+    refuse(destination, "it is not a regular file");
   }
-  if (!fs::is_directory(folder, error)) {
-    throw InputError(destination.string() + ": cannot write: the folder " + folder.string() +
-                     " does not exist");
-  }
-  if (::access(folder.c_str(), W_OK) != 0) {
-    throw InputError(destination.string() + ": cannot write: " + std::strerror(errno));
-  }
+  if (!fs::exists(folder, error)) refuse(destination, "the folder " + folder.string() + " does not exist");
+  if (!fs::is_directory(folder, error)) refuse(destination, folder.string() + " is not a folder");
+  require_temporary(destination);
 }
 
 void write_atomically(const fs::path& destination, const std::function<void(const fs::path&)>& write) {
   require_writable(destination);
-  const fs::path temporary = temporary_beside(destination);
+  const fs::path target = without_links(destination);
+  const fs::path temporary = temporary_beside(target);
   const RemoveOnExit cleanup{temporary};
   write(temporary);
   std::error_code error;
-  fs::rename(temporary, destination, error);
-  if (error) throw InputError(destination.string() + ": cannot write: " + error.message());
+  fs::rename(temporary, target, error);
+  if (error) refuse(destination, error.message());
 }
 
 void write_text_atomically(const fs::path& destination, std::string_view text) {
@@ -61,7 +79,7 @@ void write_text_atomically(const fs::path& destination, std::string_view text) {
     std::ofstream file(temporary, std::ios::binary);
     file.write(text.data(), static_cast<std::streamsize>(text.size()));
     file.close();
-    if (!file) throw InputError(destination.string() + ": cannot write: " + std::strerror(errno));
+    if (!file) refuse(destination, std::strerror(errno));
   });
 }
 

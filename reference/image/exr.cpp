@@ -11,6 +11,7 @@
 
 #include "reference/base/atomic_file.hpp"
 #include "reference/base/error.hpp"
+#include "reference/base/text.hpp"
 
 namespace plumbline::image {
 namespace {
@@ -25,11 +26,7 @@ auto naming_the_file(const std::filesystem::path& path, Body&& body) {
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& error) {
-    std::string reason = error.what();
-    for (char& c : reason) {
-      if (c == '\n') c = ' ';
-    }
-    throw InputError(fmt::format("{}: cannot read as OpenEXR: {}", path.string(), reason));
+    throw InputError(fmt::format("{}: cannot read as OpenEXR: {}", path.string(), one_line(error.what())));
   }
 }
 
@@ -100,7 +97,8 @@ void write_exr(const std::filesystem::path& path, const LayeredImage& layers) {
       file.setFrameBuffer(buffer);
       file.writePixels(layers.height);
     } catch (const std::exception& error) {
-      throw InputError(fmt::format("{}: cannot write: {}", path.string(), error.what()));
+      const std::string reason = replaced(error.what(), temporary.string(), path.string());
+      throw InputError(fmt::format("{}: cannot write: {}", path.string(), one_line(reason)));
     }
   });
 }

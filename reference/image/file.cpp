@@ -10,15 +10,16 @@
 
 #include "reference/base/atomic_file.hpp"
 #include "reference/base/error.hpp"
+#include "reference/base/text.hpp"
 
 namespace plumbline::image {
 namespace {
 
 constexpr int kMaxSide = 1 << 16;
 
-std::string first_line(std::string text) {
-  text.erase(std::find(text.begin(), text.end(), '\n'), text.end());
-  return text.empty() ? "unknown reason" : text;
+// OpenImageIO's reasons may have several lines.
+std::string reason_of(const std::string& text) {
+  return text.empty() ? "unknown reason" : one_line(text);
 }
 
 // Integer files hold sRGB unless they say they are linear; float and half files hold linear values.
@@ -39,7 +40,7 @@ Image decode(OIIO::ImageInput& input, const std::string& name) {
   const auto pixels = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
   std::vector<float> values(pixels * channels);
   if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data())) {
-    throw InputError(fmt::format("{}: cannot read the image: {}", name, first_line(input.geterror())));
+    throw InputError(fmt::format("{}: cannot read the image: {}", name, reason_of(input.geterror())));
   }
   const bool is_srgb = is_srgb_encoded(spec);
   const bool is_gray = channels < 3;
@@ -68,7 +69,7 @@ void encode(const Image8& image, const std::string& name, OIIO::Filesystem::IOPr
   output->set_ioproxy(&proxy);
   if (!output->open(name, spec) || !output->write_image(OIIO::TypeDesc::UINT8, image.rgb.data()) ||
       !output->close()) {
-    throw InputError(fmt::format("{}: cannot write: {}", name, first_line(output->geterror())));
+    throw InputError(fmt::format("{}: cannot write: {}", name, reason_of(output->geterror())));
   }
 }
 
@@ -88,7 +89,7 @@ Image read_image(std::string_view bytes, const std::string& name) {
   options.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &source);
   auto input = OIIO::ImageInput::open(name, &options, &proxy);
   if (!input)
-    throw InputError(fmt::format("{}: cannot read as an image: {}", name, first_line(OIIO::geterror())));
+    throw InputError(fmt::format("{}: cannot read as an image: {}", name, reason_of(OIIO::geterror())));
   return decode(*input, name);
 }
 

@@ -88,7 +88,10 @@ image::LayeredImage merge_shards(const std::vector<image::LayeredImage>& parts,
     }
   }
   for (int index = 0; index < count; ++index) {
-    if (!seen.contains(index)) throw InputError(fmt::format("merge: shard {}/{} is missing", index, count));
+    if (!seen.contains(index)) {
+      throw InputError(
+          fmt::format("{}: is one of {} shards, but {}/{} is missing", names[0], count, index, count));
+    }
   }
   return merged;
 }

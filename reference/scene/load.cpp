@@ -2,24 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
-
 #include "reference/base/error.hpp"
+#include "reference/base/text.hpp"
 #include "reference/scene/builtin.hpp"
 
 namespace plumbline::scene {
-namespace {
-
-std::string lower_case_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
-}  // namespace
-
 Scene load_scene(const std::string& source, const LoadOptions& options) {
   constexpr std::string_view kBuiltin = "builtin:";
   if (source.starts_with(kBuiltin)) {

@@ -48,14 +48,4 @@ std::optional<std::int64_t> parse_integer(std::string_view word) {
   return parse<std::int64_t>(word);
 }
 
-std::string one_line(std::string_view text) {
-  constexpr std::size_t kLongest = 200;
-  std::string result(text.substr(0, kLongest));
-  std::replace_if(
-      result.begin(), result.end(), [](char c) { return static_cast<unsigned char>(c) < 32U; }, ' ');
-  result.erase(result.find_last_not_of(' ') + 1);
-  if (text.size() > kLongest) result += "...";
-  return result;
-}
-
 }  // namespace plumbline::scene

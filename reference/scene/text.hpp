@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "reference/base/text.hpp"
+
 namespace plumbline::scene {
 
 /// Words between blanks (space, tab, carriage return).
@@ -20,8 +22,6 @@ namespace plumbline::scene {
 [[nodiscard]] std::optional<double> parse_number(std::string_view word);
 [[nodiscard]] std::optional<std::int64_t> parse_integer(std::string_view word);
 
-/// Foreign text fit for a one-line message: line breaks and control characters become blanks, and it ends
-/// after 200 characters.
-[[nodiscard]] std::string one_line(std::string_view text);
+using plumbline::one_line;
 
 }  // namespace plumbline::scene

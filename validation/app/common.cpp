@@ -3,19 +3,21 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <mutex>
 
 #include "prt/sh/lighting.hpp"
-#include "reference/base/atomic_file.hpp"
 #include "reference/base/error.hpp"
+#include "reference/base/text.hpp"
 #include "reference/integrate/path.hpp"
 #include "reference/scene/ground.hpp"
 #include "reference/scene/load.hpp"
+#include "reference/scene/text.hpp"
+#include "validation/app/options.hpp"
 
 namespace plumbline::app {
 
@@ -27,16 +29,24 @@ void add_scene_options(CLI::App& verb, SceneOptions& options) {
 }
 
 void add_mesh_options(CLI::App& verb, SceneOptions& options) {
-  verb.add_option(
-          "--crease", options.crease_deg,
-          "where a mesh has no normals, smooth edges up to this angle in degrees (0 = flat, 180 = all)")
-      ->check(CLI::Range(0.0F, 180.0F));
+  add_number(
+      verb, "--crease", [&options](double degrees) { options.crease_deg = static_cast<float>(degrees); },
+      "an angle from 0 to 180 degrees", [](double degrees) { return degrees >= 0.0 && degrees <= 180.0; },
+      "where a mesh has no normals, smooth edges up to this angle in degrees (0 = flat, 180 = all)");
   verb.add_flag("--ground", options.has_ground, "put a gray ground under the scene");
 }
 
-void add_camera_option(CLI::App& verb, SceneOptions& options) {
-  verb.add_option("--camera", options.camera,
+void add_camera_option(CLI::App& verb, std::string& camera) {
+  verb.add_option("--camera", camera,
                   "name of the scene's camera (default: its first, else framed automatically)");
+}
+
+const scene::Camera& camera_of(const scene::Scene& scene, const std::string& name) {
+  try {
+    return scene::find_camera(scene, name);
+  } catch (const InputError& error) {
+    throw InputError(std::string("--camera: ") + error.what());
+  }
 }
 
 scene::Scene load(const SceneOptions& options) {
@@ -52,13 +62,15 @@ void add_light_options(CLI::App& verb, LightOptions& options, bool is_required) 
                               "environment: an image (EXR, HDR, ...), builtin:NAME, or SH coefficients "
                               "(.json of `plumbline project`)");
   if (is_required) env->required();
+  add_light_modifiers(verb, options);
+}
+
+void add_light_modifiers(CLI::App& verb, LightOptions& options) {
   verb.add_option("--env-layout", options.layout,
                   "how an image maps to directions (default: by its aspect ratio)")
       ->check(CLI::IsMember({"auto", "lat-long", "angular-map", "cube"}));
-  verb.add_option("--rotate-env", options.rotation_deg,
-                  "turn the environment about world X, then Y, then Z, degrees: X,Y,Z")
-      ->delimiter(',')
-      ->expected(3);
+  add_angles(verb, "--rotate-env", options.rotation_deg,
+             "turn the environment about world X, then Y, then Z, degrees: X,Y,Z");
 }
 
 namespace {
@@ -84,55 +96,43 @@ light::Environment load(const LightOptions& options) {
     warn(fmt::format("{}: {} negative texels set to 0", options.source, result.negative_texels));
   if (options.rotation_deg.empty()) return result;
   const Vec3 degrees(options.rotation_deg[0], options.rotation_deg[1], options.rotation_deg[2]);
-  if (!is_finite(degrees)) throw InputError("--rotate-env: expected three finite angles in degrees");
   return light::rotated(std::move(result), degrees);
 }
 
+std::string command_text(const LightOptions& options) {
+  std::string text;
+  if (!options.source.empty()) text += " --env " + quoted(options.source);
+  if (options.layout != "auto") text += " --env-layout " + options.layout;
+  const std::vector<float>& angles = options.rotation_deg;
+  if (!angles.empty()) text += fmt::format(" --rotate-env {},{},{}", angles[0], angles[1], angles[2]);
+  return text;
+}
+
 Size parse_size(const std::string& text) {
-  Size size;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%dx%d%c", &size.width, &size.height, &rest) != 2 || size.width < 1 ||
-      size.height < 1) {
-    throw InputError(fmt::format("--size: expected WIDTHxHEIGHT with positive numbers, got {}", text));
-  }
-  return size;
+  const std::size_t cross = std::min(text.find('x'), text.size());
+  const auto side = [](const std::string& word) {
+    const auto number = scene::parse_integer(word);
+    return number && *number >= 1 && *number <= kMaxSide ? static_cast<int>(*number) : 0;
+  };
+  const Size size{side(text.substr(0, cross)), side(text.substr(std::min(cross + 1, text.size())))};
+  if (size.width > 0 && size.height > 0) return size;
+  throw InputError(fmt::format("--size: expected WIDTHxHEIGHT, each from 1 to {}, got {}", kMaxSide,
+                               quoted(one_line(text))));
 }
 
 int parse_bounces(const std::string& text) {
   if (text == "all") return integrate::kAllBounces;
-  int bounces = -1;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%d%c", &bounces, &rest) != 1 || bounces < 0) {
-    throw InputError(fmt::format("--bounces: expected 0, 1, 2, ... or all, got {}", text));
-  }
-  return bounces;
+  const auto number = scene::parse_integer(text);
+  if (number && *number >= 0 && *number < integrate::kAllBounces) return static_cast<int>(*number);
+  throw InputError(fmt::format("--bounces: expected 0, 1, 2, ... or all, got {}", quoted(one_line(text))));
 }
 
 std::string bounces_text(int bounces) {
   return bounces == integrate::kAllBounces ? "all" : std::to_string(bounces);
 }
 
-void write_output(const std::string& destination, const std::string& text) {
-  if (destination == "-") {
-    std::fwrite(text.data(), 1, text.size(), stdout);
-    std::fflush(stdout);
-  } else {
-    write_text_atomically(destination, text);
-  }
-}
-
-nlohmann::json number(double value) {
-  if (std::isnan(value)) return "nan";
-  if (std::isinf(value)) return value > 0.0 ? "inf" : "-inf";
-  return value;
-}
-
-void write_json(const std::string& destination, const nlohmann::json& json) {
-  if (!destination.empty()) write_output(destination, json.dump(2) + "\n");
-}
-
-void warn(const std::string& message) {
-  fmt::print(stderr, "plumbline: warning: {}\n", message);
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 std::function<void(double)> progress_bar(const std::string& title) {

@@ -2,13 +2,15 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cstdint>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "reference/light/environment.hpp"
 #include "reference/scene/scene.hpp"
+#include "validation/app/output.hpp"
 
 namespace plumbline::app {
 
@@ -30,9 +32,13 @@ struct SceneOptions {
 void add_scene_options(CLI::App& verb, SceneOptions& options);
 /// Only what changes how a mesh is loaded.
 void add_mesh_options(CLI::App& verb, SceneOptions& options);
-void add_camera_option(CLI::App& verb, SceneOptions& options);
+/// --camera; see camera_of.
+void add_camera_option(CLI::App& verb, std::string& camera);
 /// Loads and warns (on stderr) of triangles left out.
 [[nodiscard]] scene::Scene load(const SceneOptions& options);
+
+/// The camera of that name, or the scene's first. @throws InputError naming --camera
+[[nodiscard]] const scene::Camera& camera_of(const scene::Scene& scene, const std::string& name);
 
 /// --env, --env-layout, --rotate-env.
 struct LightOptions {
@@ -41,29 +47,27 @@ struct LightOptions {
   std::vector<float> rotation_deg;
 };
 void add_light_options(CLI::App& verb, LightOptions& options, bool is_required);
+/// --env-layout and --rotate-env alone.
+void add_light_modifiers(CLI::App& verb, LightOptions& options);
 /// An image, a builtin:NAME, or a .json of SH coefficients (then the band-limited light itself); black when
 /// nothing was asked for. Warns (on stderr) of negative texels that were set to 0.
 [[nodiscard]] light::Environment load(const LightOptions& options);
 
-/// "WxH", both positive. @throws InputError
+/// The options as words of a shell command, each with a blank in front.
+[[nodiscard]] std::string command_text(const LightOptions& options);
+
+/// "WxH", both from 1 to kMaxSide. @throws InputError
+inline constexpr int kMaxSide = 32768;
 struct Size {
   int width = 256;
   int height = 256;
 };
 [[nodiscard]] Size parse_size(const std::string& text);
-/// "all" or a number >= 0.
+/// "all" or a number >= 0. @throws InputError
 [[nodiscard]] int parse_bounces(const std::string& text);
 [[nodiscard]] std::string bounces_text(int bounces);
 
-/// Writes to a file by rename, or to standard output for "-".
-void write_output(const std::string& destination, const std::string& text);
-/// Writes JSON when a destination was given. Numbers JSON cannot hold become the strings "nan", "inf",
-/// "-inf".
-void write_json(const std::string& destination, const nlohmann::json& json);
-/// A number as JSON; see write_json.
-[[nodiscard]] nlohmann::json number(double value);
-
-void warn(const std::string& message);
+[[nodiscard]] double seconds_since(std::chrono::steady_clock::time_point start);
 
 /// A bar with the time left on standard error when that is a terminal; otherwise nothing. Safe to call from
 /// many threads.

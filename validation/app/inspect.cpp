@@ -1,8 +1,13 @@
 // plumbline inspect: what a baked file holds.
 #include <fmt/format.h>
 
+#include <string_view>
+
 #include "prt/transfer/baked_file.hpp"
 #include "reference/base/error.hpp"
+#include "reference/base/text.hpp"
+#include "reference/scene/text.hpp"
+#include "validation/app/options.hpp"
 #include "validation/app/verbs.hpp"
 
 namespace plumbline::app {
@@ -10,15 +15,27 @@ namespace {
 
 struct Options {
   std::string input;
-  std::vector<std::size_t> vertices;
+  std::string vertices;  // "I,J,..."
   std::string json;
 };
+
+std::vector<std::size_t> requested(const Options& options, std::size_t count) {
+  std::vector<std::size_t> vertices;
+  if (options.vertices.empty()) return vertices;
+  for (const std::string_view word : split(options.vertices, ',')) {
+    const auto vertex = scene::parse_integer(word);
+    if (!vertex || *vertex < 0 || static_cast<std::size_t>(*vertex) >= count) {
+      throw InputError(fmt::format("--vertices: {}: expected numbers from 0 to {}, got {}", options.input,
+                                   count - 1, quoted(one_line(word))));
+    }
+    vertices.push_back(static_cast<std::size_t>(*vertex));
+  }
+  return vertices;
+}
 
 nlohmann::json vectors_of(const transfer::Transfer& transfer, const std::vector<std::size_t>& vertices) {
   nlohmann::json result = nlohmann::json::object();
   for (const std::size_t v : vertices) {
-    if (v >= transfer.vertices)
-      throw InputError(fmt::format("--vertices: expected 0 to {}, got {}", transfer.vertices - 1, v));
     nlohmann::json rows = nlohmann::json::array();
     for (int c = 0; c < 3; ++c) {
       const std::span<const float> row = transfer.vector(v, c);
@@ -29,29 +46,43 @@ nlohmann::json vectors_of(const transfer::Transfer& transfer, const std::vector<
   return result;
 }
 
-int run(const Options& options) {
-  const transfer::Baked baked = transfer::load_baked(options.input);
+nlohmann::json description(const transfer::Baked& baked) {
   const transfer::Transfer& transfer = baked.transfer;
   const std::size_t bytes =
       transfer.vertices == 0 ? 0 : transfer.coefficients.size() * sizeof(float) / transfer.vertices;
-  if (options.json != "-") {
-    fmt::print(
-        "{}: {} transfer, {} bands, {} bounces, {} vertices, {} channel(s), {} bytes a vertex, {} directions "
-        "a vertex\n",
-        options.input, to_string(transfer.kind), transfer.bands, transfer.bounces, transfer.vertices,
-        transfer.channels, bytes, transfer.samples);
+  return {{"bands", transfer.bands},
+          {"transfer", std::string(to_string(transfer.kind))},
+          {"bounces", transfer.bounces},
+          {"vertices", transfer.vertices},
+          {"triangles", baked.scene.triangles.size()},
+          {"channels", transfer.channels},
+          {"bytes_per_vertex", bytes},
+          {"compression", "none"},
+          {"samples", transfer.samples},
+          {"seed", transfer.seed}};
+}
+
+std::string text_of(const std::string& name, const nlohmann::json& json) {
+  std::string text = name + "\n";
+  for (const auto& [key, value] : json.items()) {
+    if (value.is_object()) continue;
+    text += fmt::format("  {:<18} {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
   }
-  write_json(options.json, {{"bands", transfer.bands},
-                            {"transfer", std::string(to_string(transfer.kind))},
-                            {"bounces", transfer.bounces},
-                            {"vertices", transfer.vertices},
-                            {"triangles", baked.scene.triangles.size()},
-                            {"channels", transfer.channels},
-                            {"bytes_per_vertex", bytes},
-                            {"compression", "none"},
-                            {"samples", transfer.samples},
-                            {"seed", transfer.seed},
-                            {"transfer_vectors", vectors_of(transfer, options.vertices)}});
+  for (const auto& [vertex, rows] : json["transfer_vectors"].items()) {
+    text += fmt::format("  vertex {}\n", vertex);
+    for (std::size_t c = 0; c < rows.size(); ++c)
+      text += fmt::format("    {} {}\n", "rgb"[c], rows[c].dump());
+  }
+  return text;
+}
+
+int run(const Options& options) {
+  require_destinations({{"--json", options.json, ""}});
+  const transfer::Baked baked = transfer::load_baked(options.input);
+  nlohmann::json json = description(baked);
+  json["transfer_vectors"] = vectors_of(baked.transfer, requested(options, baked.transfer.vertices));
+  if (options.json != "-") write_output("-", text_of(options.input, json));
+  write_json(options.json, json);
   return kSuccess;
 }
 
@@ -61,11 +92,10 @@ void register_inspect(CLI::App& app, Action& chosen) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("inspect", "what a baked file holds");
   verb->add_option("BAKED", options->input, "file written by `plumbline bake`")->required();
-  verb->add_option("--vertices", options->vertices, "vertices whose transfer vectors to give: I,J,...")
-      ->delimiter(',');
-  verb->add_option("--json", options->json, "write everything to this file, or - for standard output");
+  verb->add_option("--vertices", options->vertices, "vertices whose transfer vectors to give: I,J,...");
+  add_json(*verb, options->json, "everything");
   verb->footer("Example: plumbline inspect plaza.prt.glb --vertices 0,17 --json -");
-  verb->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+  on_chosen(*verb, options, chosen, &run);
 }
 
 }  // namespace plumbline::app

@@ -1,8 +1,6 @@
 // validation/app/main.cpp: the `plumbline` command. The only place where exceptions are caught.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
@@ -10,60 +8,77 @@
 #include "reference/base/error.hpp"
 #include "validation/app/verbs.hpp"
 
+namespace plumbline::app {
 namespace {
 
-using plumbline::app::Action;
-
-std::string one_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  while (!text.empty() && text.back() == ' ') text.pop_back();
-  return text;
+void register_verbs(CLI::App& app, Action& action) {
+  for (const Register add :
+       {register_render, register_merge, register_gather, register_project, register_bake, register_relight,
+        register_inspect, register_compare, register_validate, register_scenes}) {
+    add(app, action);
+  }
 }
 
-int complain(const std::string& reason, int code) {
-  fmt::print(stderr, "plumbline: {}\n", one_line(reason));
-  return code;
+// CLI11 would say of a wrong verb only that one is required.
+void require_verb(const CLI::App& app, int argc, const char* const* argv) {
+  const std::string word = argc > 1 ? argv[1] : "";
+  bool is_known = word.starts_with('-') && app.get_option_no_throw(word) != nullptr;
+  std::string verbs;
+  for (const CLI::App* verb : app.get_subcommands({})) {
+    is_known |= verb->get_name() == word;
+    verbs += (verbs.empty() ? "" : ", ") + verb->get_name();
+  }
+  if (argc < 2) throw InputError(fmt::format("no verb given, there are: {} (see `plumbline --help`)", verbs));
+  if (is_known) return;
+  if (word.starts_with('-')) {
+    throw InputError(fmt::format("{}: unknown option before the verb, verbs are: {}", quoted(word), verbs));
+  }
+  throw InputError(fmt::format("unknown verb {}, there are: {}", quoted(word), verbs));
 }
 
-int run(int argc, char** argv) {
+int run(int argc, const char* const* argv) {
   CLI::App app("Plumbline: ground truth for spherical-harmonic lighting and precomputed radiance transfer",
                "plumbline");
   app.set_version_flag("--version", "plumbline " PLUMBLINE_VERSION);
   app.require_subcommand(1);
   app.footer(
       "`plumbline VERB --help` describes a verb and shows an example.\n"
-      "Exit codes: 0 success, 1 a check failed, 2 bad input or usage, 3 internal error.");
+      "Exit codes: 0 success, 1 a check failed, 2 bad input or usage, 3 internal error.\n"
+      "Example: plumbline render builtin:cornell -o cornell.exr --spp 64");
   Action action;
-  using namespace plumbline::app;
-  for (const Register add :
-       {register_render, register_merge, register_gather, register_project, register_bake, register_relight,
-        register_inspect, register_compare, register_validate, register_scenes}) {
-    add(app, action);
-  }
+  register_verbs(app, action);
+  require_verb(app, argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {  // --help, --version
     return app.exit(success);
   } catch (const CLI::ParseError& error) {
-    if (argc < 2) return complain("no verb given (see `plumbline --help`)", kBadInput);
-    return complain(error.what(), kBadInput);
+    throw InputError(fmt::format("{} (see `plumbline {} --help`)", error.what(), argv[1]));
   }
-  return action ? action() : static_cast<int>(kBadInput);
+  return action();
+}
+
+int complain_and(ExitCode code, const std::string& reason) {
+  complain(reason);
+  return code;
 }
 
 }  // namespace
+}  // namespace plumbline::app
 
 int main(int argc, char** argv) {
   using namespace plumbline;
+  using app::complain_and;
   try {
-    return run(argc, argv);
+    app::prepare_standard_streams();
+    return app::run(argc, argv);
   } catch (const InputError& error) {
-    return complain(error.what(), app::kBadInput);
+    return complain_and(app::kBadInput, error.what());
   } catch (const DeviceError& error) {
-    return complain(error.what(), app::kBadInput);
+    return complain_and(app::kBadInput, error.what());
   } catch (const std::bad_alloc&) {
-    return complain("not enough memory for this input", app::kBadInput);
+    return complain_and(app::kBadInput, "not enough memory for this input");
   } catch (const std::exception& error) {
-    return complain(std::string("internal error: ") + error.what(), app::kInternal);
+    return complain_and(app::kInternal, std::string("internal error: ") + error.what());
   }
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "reference/base/vector.hpp"
@@ -13,9 +14,14 @@ struct PointAndNormal {
   Vec3 normal{0.0F};  // unit
 };
 
-/// Comma-separated x,y,z,nx,ny,nz a line; a first line that holds names, empty lines and lines that start
-/// with # are skipped; further columns are ignored. Normals are normalised. @throws InputError naming file
-/// and line: too few columns, not a number, not finite, zero normal.
+/// Comma-separated x,y,z,nx,ny,nz a line; empty lines, lines that start with # and a first line that holds no
+/// number (the columns' names) are skipped; further columns are ignored. Normals are normalised.
+/// @throws InputError naming file and line: too few columns, not a number, not finite, farther out than any
+/// scene may be, zero normal.
 [[nodiscard]] std::vector<PointAndNormal> read_points(const std::filesystem::path& path);
+
+/// One line "x,y,z,nx,ny,nz,a_r,a_g,a_b,b_r,b_g,b_b": a point, its normal and two colours of it, with the
+/// digits that bring every float back.
+[[nodiscard]] std::string csv_line(const PointAndNormal& at, const RgbD& a, const RgbD& b);
 
 }  // namespace plumbline::app

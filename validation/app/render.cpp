@@ -1,18 +1,23 @@
 // plumbline render: a path-traced image with its standard error.
 #include <fmt/format.h>
 
-#include <sstream>
+#include <algorithm>
+#include <map>
+#include <string_view>
 
-#include "reference/base/atomic_file.hpp"
 #include "reference/base/error.hpp"
+#include "reference/base/text.hpp"
 #include "reference/image/exr.hpp"
 #include "reference/integrate/render.hpp"
 #include "reference/integrate/shards.hpp"
-#include "reference/scene/load.hpp"
+#include "reference/scene/text.hpp"
+#include "validation/app/options.hpp"
 #include "validation/app/verbs.hpp"
 
 namespace plumbline::app {
 namespace {
+
+constexpr int kMostShards = 1 << 20;
 
 struct Options {
   SceneOptions scene;
@@ -35,13 +40,14 @@ struct Options {
 
 integrate::Layers parse_layers(const std::string& list) {
   integrate::Layers layers;
-  std::stringstream words(list);
-  for (std::string word; std::getline(words, word, ',');) {
+  if (list.empty()) return layers;
+  for (const std::string_view word : split(list, ',')) {
     const bool is_all = word == "all";
     if (!is_all && word != "emission" && word != "bounces" && word != "albedo" && word != "normal" &&
         word != "position" && word != "depth") {
-      throw InputError(fmt::format(
-          "--layers: expected emission, bounces, albedo, normal, position, depth or all, got {}", word));
+      throw InputError(
+          fmt::format("--layers: expected emission, bounces, albedo, normal, position, depth or all, got {}",
+                      quoted(one_line(word))));
     }
     layers.emission |= is_all || word == "emission";
     layers.bounces |= is_all || word == "bounces";
@@ -54,12 +60,15 @@ integrate::Layers parse_layers(const std::string& list) {
 }
 
 integrate::Shard parse_shard(const std::string& text) {
-  integrate::Shard shard;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%d/%d%c", &shard.index, &shard.count, &rest) != 2) {
-    throw InputError(fmt::format("--shard: expected i/N with 0 <= i < N, got {}", text));
+  const std::size_t slash = std::min(text.find('/'), text.size());
+  const auto index = scene::parse_integer(text.substr(0, slash));
+  const auto count = scene::parse_integer(text.substr(std::min(slash + 1, text.size())));
+  const bool is_valid = index && count && *index >= 0 && *index < *count && *count <= kMostShards;
+  if (!is_valid) {
+    throw InputError(fmt::format("--shard: expected i/N with 0 <= i < N <= {}, got {}", kMostShards,
+                                 quoted(one_line(text))));
   }
-  return shard;
+  return {static_cast<int>(*index), static_cast<int>(*count)};
 }
 
 integrate::RenderSettings settings_of(const Options& options) {
@@ -70,13 +79,19 @@ integrate::RenderSettings settings_of(const Options& options) {
   settings.samples_per_pixel = options.spp;
   if (options.has_target->count() > 0) settings.target_error = options.target_error;
   if (options.has_seconds->count() > 0) settings.max_seconds = options.max_seconds;
-  if (options.has_spp->count() > 0 && (settings.target_error || settings.max_seconds)) {
+  const bool is_progressive = settings.target_error || settings.max_seconds;
+  if (options.has_spp->count() > 0 && is_progressive) {
     throw InputError("--spp: give either a sample count or --target-error / --max-seconds");
   }
   settings.max_bounces = parse_bounces(options.bounces);
   settings.seed = options.seed;
   settings.threads = options.threads;
   settings.shard = parse_shard(options.shard);
+  if (settings.shard.count > 1 && is_progressive) {
+    throw InputError(
+        "--shard: a part cannot know the whole image's error or share its time: give --spp instead of "
+        "--target-error / --max-seconds");
+  }
   settings.layers = parse_layers(options.layers);
   settings.progress = progress_bar("render");
   return settings;
@@ -89,12 +104,7 @@ std::string reproducing_command(const Options& o, const integrate::RenderResult&
   if (o.scene.crease_deg > 0.0F) command += fmt::format(" --crease {}", o.scene.crease_deg);
   if (o.scene.has_ground) command += " --ground";
   if (!o.scene.camera.empty()) command += " --camera " + quoted(o.scene.camera);
-  if (!o.light.source.empty()) command += " --env " + quoted(o.light.source);
-  if (o.light.layout != "auto") command += " --env-layout " + o.light.layout;
-  if (!o.light.rotation_deg.empty()) {
-    command += fmt::format(" --rotate-env {},{},{}", o.light.rotation_deg[0], o.light.rotation_deg[1],
-                           o.light.rotation_deg[2]);
-  }
+  command += command_text(o.light);
   if (o.has_target->count() > 0 && o.has_seconds->count() == 0) {
     command += fmt::format(" --target-error {}", o.target_error);
   } else if (o.has_seconds->count() > 0) {
@@ -138,31 +148,20 @@ void set_attributes(image::LayeredImage& image, const Options& options, const in
   }
 }
 
-int run(const Options& options) {
-  const integrate::RenderSettings settings = settings_of(options);
-  require_writable(options.output);
-  if (options.spp < 1) throw InputError(fmt::format("--spp: expected at least 1, got {}", options.spp));
-  const integrate::World world(load(options.scene), load(options.light));
-  const scene::Camera& camera = scene::find_camera(world.scene, options.scene.camera);
-  if (world.is_sky_black && world.emitters.is_empty() && world.scene.lights.empty()) {
-    warn("no light: the scene has no emitter and no --env was given, the image is black");
-  }
-  integrate::RenderResult result = integrate::render(world, camera, settings);
-  set_attributes(result.image, options, world, settings, result, camera.name);
-  image::write_exr(options.output, result.image);
-  if (result.samples_per_pixel < 2)
-    warn("a single sample has no standard error: the stderr layers are infinite");
+void report(const Options& options, const integrate::RenderSettings& settings,
+            const integrate::RenderResult& result) {
   if (options.json != "-") {
-    fmt::print(
-        "{}: {} samples a pixel, mean radiance {:.6g}, relative standard error {:.3g}, {:.2f} s, stopped by "
-        "{}\n",
-        options.output, result.samples_per_pixel, result.mean_radiance, result.relative_error, result.seconds,
-        stop_text(result.stop));
+    say(
+        fmt::format("{}: {} samples a pixel, mean radiance {:.6g}, relative standard error {:.3g}, {:.2f} s, "
+                    "stopped by {}",
+                    options.output, result.samples_per_pixel, result.mean_radiance, result.relative_error,
+                    result.seconds, stop_text(result.stop)));
   }
+  const std::map<std::string, std::string>& attributes = result.image.attributes;
   write_json(options.json, {{"output", options.output},
                             {"scene", options.scene.source},
-                            {"scene_hash", result.image.attributes.at("plumbline.sceneHash")},
-                            {"environment", world.environment.name},
+                            {"scene_hash", attributes.at("plumbline.sceneHash")},
+                            {"environment", attributes.at("plumbline.environment")},
                             {"width", settings.width},
                             {"height", settings.height},
                             {"samples_per_pixel", result.samples_per_pixel},
@@ -172,7 +171,23 @@ int run(const Options& options) {
                             {"seed", settings.seed},
                             {"seconds", result.seconds},
                             {"stop", stop_text(result.stop)},
-                            {"command", result.image.attributes.at("plumbline.command")}});
+                            {"command", attributes.at("plumbline.command")}});
+}
+
+int run(const Options& options) {
+  const integrate::RenderSettings settings = settings_of(options);
+  require_destinations({{"-o", options.output, ".exr"}, {"--json", options.json, ""}});
+  const integrate::World world(load(options.scene), load(options.light));
+  const scene::Camera& camera = camera_of(world.scene, options.scene.camera);
+  if (world.is_sky_black && world.emitters.is_empty() && world.scene.lights.empty()) {
+    warn("no light: the scene has no emitter and no --env was given, the image is black");
+  }
+  integrate::RenderResult result = integrate::render(world, camera, settings);
+  set_attributes(result.image, options, world, settings, result, camera.name);
+  image::write_exr(options.output, result.image);
+  if (result.samples_per_pixel < 2)
+    warn("a single sample has no standard error: the stderr layers are infinite");
+  report(options, settings, result);
   return kSuccess;
 }
 
@@ -183,27 +198,25 @@ void register_render(CLI::App& app, Action& chosen) {
   CLI::App* verb = app.add_subcommand("render", "path-trace an image; every pixel with its standard error");
   add_scene_options(*verb, options->scene);
   add_light_options(*verb, options->light, false);
-  verb->add_option("-o,--output", options->output, "layered OpenEXR image to write")->required();
-  options->has_spp = verb->add_option("--spp", options->spp, "samples a pixel (default 64)");
-  options->has_target = verb->add_option(
-      "--target-error", options->target_error,
+  add_output(*verb, options->output, "layered OpenEXR image to write")->required();
+  options->has_spp = add_whole_number(*verb, "--spp", options->spp, {1}, "samples a pixel (default 64)");
+  options->has_target = add_positive(
+      *verb, "--target-error", options->target_error,
       "stop when the root of the mean squared standard error over the mean radiance is this small");
   options->has_seconds =
-      verb->add_option("--max-seconds", options->max_seconds, "stop after this time, whatever the error");
-  verb->add_option("--bounces", options->bounces,
-                   "indirect bounces: 0 = direct light only, all = no limit (default)");
-  verb->add_option("--size", options->size, "image size WxH (default 256x256)");
-  add_camera_option(*verb, options->scene);
-  verb->add_option("--seed", options->seed, "same seed, same bits");
+      add_positive(*verb, "--max-seconds", options->max_seconds, "stop after this time, whatever the error");
+  add_bounces(*verb, options->bounces);
+  add_size(*verb, options->size);
+  add_camera_option(*verb, options->scene.camera);
+  add_seed(*verb, options->seed);
   verb->add_option("--shard", options->shard,
                    "render part i of N (i/N); `plumbline merge` puts the parts together");
-  verb->add_option("--threads", options->threads, "0 = all; never changes the image")
-      ->check(CLI::Range(0, 4096));
+  add_threads(*verb, options->threads);
   verb->add_option("--layers", options->layers,
                    "further layers: emission,bounces,albedo,normal,position,depth or all");
-  verb->add_option("--json", options->json, "write a summary to this file, or - for standard output");
+  add_json(*verb, options->json, "a summary");
   verb->footer("Example: plumbline render builtin:cornell -o cornell.exr --spp 256 --layers bounces");
-  verb->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+  on_chosen(*verb, options, chosen, &run);
 }
 
 }  // namespace plumbline::app

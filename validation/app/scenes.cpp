@@ -3,12 +3,17 @@
 
 #include "reference/light/environment.hpp"
 #include "reference/scene/builtin.hpp"
+#include "validation/app/options.hpp"
 #include "validation/app/verbs.hpp"
 
 namespace plumbline::app {
 namespace {
 
-int run(const std::string& json) {
+struct Options {
+  std::string json;
+};
+
+nlohmann::json listing() {
   nlohmann::json out = {{"scenes", nlohmann::json::array()}, {"environments", nlohmann::json::array()}};
   for (const scene::BuiltinInfo& info : scene::builtin_scenes()) {
     out["scenes"].push_back({{"name", info.name}, {"description", info.description}});
@@ -16,27 +21,37 @@ int run(const std::string& json) {
   for (const light::BuiltinEnvironment& info : light::builtin_environments()) {
     out["environments"].push_back({{"name", info.name}, {"description", info.description}});
   }
-  if (json != "-") {
-    for (const char* group : {"scenes", "environments"}) {
-      fmt::print("{}:\n", group);
-      for (const nlohmann::json& entry : out[group]) {
-        fmt::print("  builtin:{:<18} {}\n", entry["name"].get<std::string>(),
-                   entry["description"].get<std::string>());
-      }
+  return out;
+}
+
+std::string text_of(const nlohmann::json& out) {
+  std::string text;
+  for (const char* group : {"scenes", "environments"}) {
+    text += fmt::format("{}:\n", group);
+    for (const nlohmann::json& entry : out[group]) {
+      text += fmt::format("  builtin:{:<18} {}\n", entry["name"].get<std::string>(),
+                          entry["description"].get<std::string>());
     }
   }
-  write_json(json, out);
+  return text;
+}
+
+int run(const Options& options) {
+  require_destinations({{"--json", options.json, ""}});
+  const nlohmann::json out = listing();
+  if (options.json != "-") write_output("-", text_of(out));
+  write_json(options.json, out);
   return kSuccess;
 }
 
 }  // namespace
 
 void register_scenes(CLI::App& app, Action& chosen) {
-  auto json = std::make_shared<std::string>();
+  auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("scenes", "list the built-in scenes and environments");
-  verb->add_option("--json", *json, "write the list to this file, or - for standard output");
+  add_json(*verb, options->json, "the list");
   verb->footer("Example: plumbline scenes");
-  verb->callback([json, &chosen] { chosen = [json] { return run(*json); }; });
+  on_chosen(*verb, options, chosen, &run);
 }
 
 }  // namespace plumbline::app

@@ -190,7 +190,7 @@ void register_validate(CLI::App& app, Action& chosen) {
       app.add_subcommand("validate", "accuracy report: SH, transfer and images held against the truth");
   verb->add_option("SCENE", options->scenes, "scenes to judge (default: builtin:plaza)");
   add_mesh_options(*verb, options->scene);
-  add_camera_option(*verb, options->scene);
+  add_camera_option(*verb, options->scene.camera);
   verb->add_option("--env", options->environments,
                    "environments to judge under (default: builtin:two-lobes)");
   verb->add_option("--bands", options->bands, "band counts to judge (default: 3 5)")->delimiter(',');
