@@ -134,12 +134,14 @@ RgbD emitter_by_direction(const World& world, const Meeting& meeting, const Vec3
   return RgbD(meeting.emission) * (kPi * power_heuristic(pdf, light_pdf));
 }
 
-/// Probability to go on. Never more than the light that is left, and a little less than 1 for ever in a white
-/// room.
+/// Probability to go on. The first bounce always does: it carries most of the indirect light, and ending it early costs more variance than its
+/// two rays cost time (measured on the Cornell box: variance x time 4.0 against 5.1 for the throughput itself). Later the root of what is
+/// left, and a little less than 1 for ever in a white room.
 float survival(const Rgb& throughput, int bounce) {
   constexpr int kPatience = 8;
+  if (bounce == 0) return is_black(throughput) ? 0.0F : 1.0F;
   const float limit = bounce < kPatience ? 1.0F : 0.98F;
-  return std::min(max_component(throughput), limit);
+  return std::min(std::sqrt(max_component(throughput)), limit);
 }
 
 void add(BounceTerms& terms, int bounce, const RgbD& value) {
@@ -187,7 +189,7 @@ void add_irradiance(const World& world, const trace::SurfacePoint& start, int ma
     // 5. On to the next vertex: (albedo / pi) E cos / pdf = albedo E, then Russian roulette.
     throughput *= meeting->albedo;
     const float probability = survival(throughput, bounce);
-    if (sampler.next_1d() >= probability) return;
+    if (!(sampler.next_1d() < probability)) return;
     throughput /= probability;
     point = meeting->point;
   }

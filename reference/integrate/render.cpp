@@ -95,8 +95,8 @@ void render_pixel(const World& world, const scene::Camera& camera, const RenderS
     const Vec2 jitter = sampler.next_2d();
     const Vec3 direction = scene::ray_direction(camera, static_cast<float>(x) + jitter.x,
                                                 static_cast<float>(y) + jitter.y, film.width, film.height);
-    const CameraSample seen =
-        sample_radiance(world, {camera.eye, direction}, settings.max_bounces, sampler, terms);
+    CameraSample seen = sample_radiance(world, {camera.eye, direction}, settings.max_bounces, sampler, terms);
+    if (!seen.is_hit && !settings.is_background_visible) seen.emission = Rgb(0.0F);
     RgbD sum(seen.emission);
     for (const RgbD& term : terms) sum += term;
     mean.add(s, sum);

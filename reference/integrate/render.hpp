@@ -43,6 +43,7 @@ struct RenderSettings {
   std::uint64_t seed = 0;
   int threads = 0;  // 0 = all there are; never changes the result
   Shard shard;
+  bool is_background_visible = true;  // false: camera rays that meet nothing are black
   Layers layers;
   Progress progress;
 };

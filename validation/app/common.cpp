@@ -14,6 +14,7 @@
 #include "reference/base/atomic_file.hpp"
 #include "reference/base/error.hpp"
 #include "reference/integrate/path.hpp"
+#include "reference/scene/ground.hpp"
 #include "reference/scene/load.hpp"
 
 namespace plumbline::app {
@@ -22,10 +23,15 @@ void add_scene_options(CLI::App& verb, SceneOptions& options) {
   verb.add_option("SCENE", options.source,
                   "a .gltf, .glb, .obj or .ply file, or builtin:NAME (see `plumbline scenes`)")
       ->required();
+  add_mesh_options(verb, options);
+}
+
+void add_mesh_options(CLI::App& verb, SceneOptions& options) {
   verb.add_option(
           "--crease", options.crease_deg,
           "where a mesh has no normals, smooth edges up to this angle in degrees (0 = flat, 180 = all)")
       ->check(CLI::Range(0.0F, 180.0F));
+  verb.add_flag("--ground", options.has_ground, "put a gray ground under the scene");
 }
 
 void add_camera_option(CLI::App& verb, SceneOptions& options) {
@@ -38,7 +44,7 @@ scene::Scene load(const SceneOptions& options) {
   if (result.dropped_degenerate > 0) {
     warn(fmt::format("{}: left out {} triangles without area", options.source, result.dropped_degenerate));
   }
-  return result;
+  return options.has_ground ? scene::with_ground(std::move(result)) : result;
 }
 
 void add_light_options(CLI::App& verb, LightOptions& options, bool is_required) {

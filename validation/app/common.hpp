@@ -20,13 +20,16 @@ enum ExitCode : int { kSuccess = 0, kCheckFailed = 1, kBadInput = 2, kInternal =
 using Action = std::function<int()>;
 using Register = void (*)(CLI::App& app, Action& chosen);
 
-/// SCENE, --crease, --camera.
+/// SCENE, --crease, --ground, --camera.
 struct SceneOptions {
   std::string source;
   float crease_deg = 0.0F;
+  bool has_ground = false;
   std::string camera;
 };
 void add_scene_options(CLI::App& verb, SceneOptions& options);
+/// Only what changes how a mesh is loaded.
+void add_mesh_options(CLI::App& verb, SceneOptions& options);
 void add_camera_option(CLI::App& verb, SceneOptions& options);
 /// Loads and warns (on stderr) of triangles left out.
 [[nodiscard]] scene::Scene load(const SceneOptions& options);

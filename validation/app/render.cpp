@@ -87,6 +87,7 @@ integrate::RenderSettings settings_of(const Options& options) {
 std::string reproducing_command(const Options& o, const integrate::RenderResult& result) {
   std::string command = fmt::format("plumbline render {}", quoted(o.scene.source));
   if (o.scene.crease_deg > 0.0F) command += fmt::format(" --crease {}", o.scene.crease_deg);
+  if (o.scene.has_ground) command += " --ground";
   if (!o.scene.camera.empty()) command += " --camera " + quoted(o.scene.camera);
   if (!o.light.source.empty()) command += " --env " + quoted(o.light.source);
   if (o.light.layout != "auto") command += " --env-layout " + o.light.layout;

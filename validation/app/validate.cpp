@@ -1,4 +1,230 @@
+// plumbline validate: an accuracy report.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include "reference/base/atomic_file.hpp"
+#include "reference/base/error.hpp"
+#include "reference/scene/load.hpp"
 #include "validation/app/verbs.hpp"
+#include "validation/checks/suite.hpp"
+#include "validation/report/report.hpp"
+
 namespace plumbline::app {
-void register_validate(CLI::App&, Action&) {}
+namespace {
+
+struct Options {
+  std::vector<std::string> scenes;
+  SceneOptions scene;  // what all scenes share
+  std::vector<std::string> environments;
+  std::vector<int> bands = {3, 5};
+  std::vector<std::string> families;
+  std::string output;
+  std::string junit;
+  std::string json;
+  std::string size = "384x288";
+  checks::Budget budget;
+};
+
+std::string read_line_after(const char* file, const std::string& key) {
+  std::ifstream lines(file);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with(key)) continue;
+    const std::size_t value = line.find_first_not_of(" \t:=\"", key.size());
+    std::string text = value == std::string::npos ? "" : line.substr(value);
+    if (!text.empty() && text.back() == '"') text.pop_back();
+    return text;
+  }
+  return "unknown";
+}
+
+std::map<std::string, std::string> machine() {
+  return {{"cpu", read_line_after("/proc/cpuinfo", "model name")},
+          {"threads", std::to_string(std::thread::hardware_concurrency())},
+          {"memory", read_line_after("/proc/meminfo", "MemTotal")},
+          {"os", read_line_after("/etc/os-release", "PRETTY_NAME")},
+          {"compiler", __VERSION__}};
+}
+
+std::string now_utc() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm parts{};
+  ::gmtime_r(&now, &parts);
+  char text[32];
+  std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text;
+}
+
+std::string reproducing_command(const Options& o) {
+  std::string command = "plumbline validate";
+  for (const std::string& scene : o.scenes) command += " " + quoted(scene);
+  if (o.scene.crease_deg > 0.0F) command += fmt::format(" --crease {}", o.scene.crease_deg);
+  if (o.scene.has_ground) command += " --ground";
+  for (const std::string& environment : o.environments) command += " --env " + quoted(environment);
+  command += " --bands";
+  for (const int bands : o.bands) command += fmt::format(" {}", bands);
+  if (!o.families.empty()) command += fmt::format(" --checks {}", fmt::join(o.families, ","));
+  command +=
+      fmt::format(" --size {} --spp {} --samples {} --gather-samples {} --seed {}", o.size,
+                  o.budget.image_samples, o.budget.bake_samples, o.budget.gather_samples, o.budget.seed);
+  return command + " -o " + quoted(o.output);
+}
+
+checks::Suite make_suite(const Options& options) {
+  checks::Suite suite;
+  for (const int bands : options.bands) {
+    if (bands < 1 || bands > 30)
+      throw InputError(fmt::format("--bands: expected 1 to 30 for a validation, got {}", bands));
+    suite.bands.push_back(bands);
+  }
+  std::sort(suite.bands.begin(), suite.bands.end());
+  suite.bands.erase(std::unique(suite.bands.begin(), suite.bands.end()), suite.bands.end());
+  for (const std::string& source : options.scenes) {
+    SceneOptions one = options.scene;
+    one.source = source;
+    suite.scenes.push_back({checks::short_name(source), load(one), one.camera});
+    (void)scene::find_camera(suite.scenes.back().scene, one.camera);
+  }
+  for (const std::string& source : options.environments) {
+    LightOptions one;
+    one.source = source;
+    suite.environments.push_back(load(one));
+  }
+  suite.budget = options.budget;
+  const Size size = parse_size(options.size);
+  suite.budget.width = size.width;
+  suite.budget.height = size.height;
+  suite.announce = [](const std::string& what) { fmt::print(stderr, "plumbline: {}\n", what); };
+  return suite;
+}
+
+bool is_chosen(const Options& options, const std::string& family) {
+  return options.families.empty() ||
+         std::find(options.families.begin(), options.families.end(), family) != options.families.end();
+}
+
+report::Report start_report(const Options& options) {
+  report::Report report;
+  report.title = "Plumbline accuracy report";
+  report.summary =
+      "Precomputed radiance transfer held against path tracing and closed forms. Every number carries its "
+      "uncertainty, every bound its source.";
+  report.date = now_utc();
+  report.version = PLUMBLINE_VERSION;
+  report.command = reproducing_command(options);
+  report.machine = machine();
+  const checks::Budget& b = options.budget;
+  report.settings = {{"seed", std::to_string(b.seed)},
+                     {"significance of each statistical test, its many values together",
+                      fmt::format("{:g}", b.significance)},
+                     {"image", options.size},
+                     {"paths a pixel", std::to_string(b.image_samples)},
+                     {"directions a vertex (bake)", std::to_string(b.bake_samples)},
+                     {"paths a vertex (truth)", std::to_string(b.gather_samples)}};
+  return report;
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder)) {
+    throw InputError(fmt::format("{}: cannot make this folder: {}", folder.string(),
+                                 error ? error.message() : "it is a file"));
+  }
+  require_writable(folder / "report.html");
+}
+
+void print_summary(const report::Report& report, const std::filesystem::path& page) {
+  for (const report::Headline& headline : report.headlines)
+    fmt::print("{}: {}\n", headline.label, headline.value);
+  std::map<std::string, int> counts;
+  for (const checks::Finding& finding : report.findings) {
+    ++counts[checks::to_string(report::verdict(finding))];
+    if (report::verdict(finding) != checks::Verdict::pass) {
+      fmt::print("{}: {}: {}: measured {:.4g} +- {:.2g}, bound {:.4g}\n",
+                 checks::to_string(report::verdict(finding)), finding.family, finding.name, finding.measured,
+                 finding.uncertainty, finding.bound);
+    }
+  }
+  fmt::print("{} checks: {} passed, {} failed, {} inconclusive\n", report.findings.size(), counts["pass"],
+             counts["fail"], counts["inconclusive"]);
+  fmt::print("report: {}\n", page.string());
+}
+
+int run(const Options& options) {
+  const checks::Suite suite = make_suite(options);
+  const std::filesystem::path folder(options.output);
+  make_folder(folder);
+  report::Report report = start_report(options);
+  for (const checks::Family& family : checks::families()) {
+    if (!is_chosen(options, family.name)) continue;
+    const auto start = std::chrono::steady_clock::now();
+    const std::size_t before = report.findings.size();
+    family.run(suite, report);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const auto added = static_cast<double>(std::max<std::size_t>(1, report.findings.size() - before));
+    for (std::size_t i = before; i < report.findings.size(); ++i)
+      report.findings[i].seconds = seconds / added;
+  }
+  const std::string json = report::to_json(report).dump(2) + "\n";
+  write_text_atomically(folder / "report.json", json);
+  write_text_atomically(folder / "junit.xml", report::to_junit(report));
+  write_text_atomically(folder / "report.html", report::to_html(report));
+  if (!options.junit.empty()) write_text_atomically(options.junit, report::to_junit(report));
+  if (!options.json.empty()) write_output(options.json, json);
+  if (options.json != "-") print_summary(report, folder / "report.html");
+  return report::verdict(report) == checks::Verdict::fail ? kCheckFailed : kSuccess;
+}
+
+}  // namespace
+
+void register_validate(CLI::App& app, Action& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb =
+      app.add_subcommand("validate", "accuracy report: SH, transfer and images held against the truth");
+  verb->add_option("SCENE", options->scenes, "scenes to judge (default: builtin:plaza)");
+  add_mesh_options(*verb, options->scene);
+  add_camera_option(*verb, options->scene);
+  verb->add_option("--env", options->environments,
+                   "environments to judge under (default: builtin:two-lobes)");
+  verb->add_option("--bands", options->bands, "band counts to judge (default: 3 5)")->delimiter(',');
+  std::vector<std::string> names;
+  for (const checks::Family& family : checks::families()) names.push_back(family.name);
+  verb->add_option("--checks", options->families,
+                   fmt::format("families to run: {} (default: all)", fmt::join(names, ",")))
+      ->delimiter(',')
+      ->check(CLI::IsMember(names));
+  verb->add_option("-o,--output", options->output, "folder for report.html, report.json and junit.xml")
+      ->required();
+  verb->add_option("--junit", options->junit, "write the JUnit XML here too");
+  verb->add_option("--json", options->json, "write the numbers here too, or - for standard output");
+  verb->add_option("--size", options->size, "image size WxH (default 384x288)");
+  verb->add_option("--spp", options->budget.image_samples,
+                   "paths a pixel of the reference images (default 128)")
+      ->check(CLI::Range(2, 1 << 20));
+  verb->add_option("--samples", options->budget.bake_samples,
+                   "directions a vertex of the bake (default 1024)")
+      ->check(CLI::Range(32, 1 << 24));
+  verb->add_option("--gather-samples", options->budget.gather_samples,
+                   "paths a vertex of the vertex truth (default 256)")
+      ->check(CLI::Range(32, 1 << 24));
+  verb->add_option("--seed", options->budget.seed, "same seed, same numbers");
+  verb->add_option("--threads", options->budget.threads, "0 = all; never changes the numbers")
+      ->check(CLI::Range(0, 4096));
+  verb->footer("Example: plumbline validate builtin:plaza --env builtin:sun-sky --bands 3 5 -o report");
+  verb->callback([options, &chosen] {
+    chosen = [options] {
+      if (options->scenes.empty()) options->scenes = {"builtin:plaza"};
+      if (options->environments.empty()) options->environments = {"builtin:two-lobes"};
+      return run(*options);
+    };
+  });
+}
+
 }  // namespace plumbline::app

@@ -21,14 +21,14 @@ namespace plumbline::metrics {
 /// then mse_unbiased, mean_signed_stderr and bias_z are NaN.
 ///
 /// Tone mapping (psnr, flip_mean, ssim only). One exposure for both images: the reference's 99th percentile
-/// of luminance maps to 1 (exposure 1 where it is not positive), then values are clamped to [0, 1]. What
-/// exceeds that luminance in both images therefore looks the same to these three, and to no other metric: a
-/// constant image looks equal to a brighter one. flip_mean sees the linear values, psnr the sRGB-encoded
+/// of luminance maps to 1/2 (exposure 1 where it is not positive), then values are clamped to [0, 1]. What
+/// exceeds twice that luminance in both images therefore looks the same to these three, and to no other metric. flip_mean sees the linear values, psnr the sRGB-encoded
 /// values, ssim the sRGB-encoded luminances. flip_mean and ssim look at neighbourhoods and are NaN when
 /// nonfinite > 0.
 struct ImageComparison {
   double rmse = 0.0;           // sqrt(mean (v - r)^2)
   double relative_rmse = 0.0;  // rmse / mean(r); mean(r) <= 0: infinite, but 0 when rmse = 0
+  double relmse = 0.0;         // mean (v - r)^2 / (r^2 + 0.01), as renderers are compared
   double mse = 0.0;
   double mse_unbiased = 0.0;  // mse less the mean variance of both images (see Noise); may be < 0
   double max_abs = 0.0;

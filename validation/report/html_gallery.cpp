@@ -40,7 +40,7 @@ std::string missing(const std::string& label) {
       escape_markup(label));
 }
 
-std::string figure(const Gallery::Entry& entry, const std::string& title) {
+std::string figure(const Gallery::Entry& entry, const std::string& title, float exposure_stops) {
   const image::Image& image = entry.image;
   require_pixels(entry.label, image.width, image.height, image.pixels.size(), 1);
   if (image.pixels.empty()) return missing(entry.label);
@@ -49,8 +49,9 @@ std::string figure(const Gallery::Entry& entry, const std::string& title) {
       "<div class=\"picture{2}\"><img src=\"{3}\" width=\"{4}\" height=\"{5}\" alt=\"{6}: {0}\"></div>"
       "<figcaption>{0}</figcaption></figure>\n",
       escape_attribute(entry.label), base64(image::encode_png(pack_radiance(image))),
-      blocky(image.width, image.height), data_uri(image::tone_map(shrink(image, kLongestPreview))),
-      image.width, image.height, escape_attribute(title));
+      blocky(image.width, image.height),
+      data_uri(image::tone_map(shrink(image, kLongestPreview), exposure_stops)), image.width, image.height,
+      escape_attribute(title));
 }
 
 std::string scale_bar(const Gallery::ErrorMap& error) {
@@ -80,8 +81,8 @@ std::string figure(const Gallery::ErrorMap& error, const std::string& title) {
 // What only works with the script is hidden until the script shows it.
 constexpr const char* kExposure = R"(<div class="controls exposure" hidden>
 <label for="exposure-{0}">Exposure</label>
-<input type="range" id="exposure-{0}" min="-10" max="10" step="0.25" value="0">
-<output for="exposure-{0}">0 stops</output>
+<input type="range" id="exposure-{0}" min="-10" max="10" step="0.25" value="{1}">
+<output for="exposure-{0}">{1} stops</output>
 <button type="button" data-auto>Auto</button>
 <button type="button" data-reset>Reset</button>
 </div>
@@ -99,14 +100,15 @@ constexpr const char* kCompare = R"(<div class="compare" hidden>
 
 std::string gallery(const Gallery& gallery, std::size_t index) {
   std::string figures;
-  for (const Gallery::Entry& entry : gallery.entries) figures += figure(entry, gallery.title);
+  for (const Gallery::Entry& entry : gallery.entries)
+    figures += figure(entry, gallery.title, gallery.exposure_stops);
   for (const Gallery::ErrorMap& error : gallery.errors) figures += figure(error, gallery.title);
   if (figures.empty()) figures = "<p class=\"note\">No pictures.</p>\n";
   const std::string caption =
       gallery.caption.empty() ? "" : "<p class=\"caption\">" + escape_markup(gallery.caption) + "</p>\n";
   return fmt::format("<div class=\"gallery\">\n<h3>{}</h3>\n{}", escape_markup(gallery.title), caption) +
-         fmt::format(fmt::runtime(kExposure), index) + "<div class=\"pictures\">\n" + figures + "</div>\n" +
-         kCompare + "</div>\n";
+         fmt::format(fmt::runtime(kExposure), index, gallery.exposure_stops) + "<div class=\"pictures\">\n" +
+         figures + "</div>\n" + kCompare + "</div>\n";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The page's behaviour. Without it everything stays readable: pictures at exposure 0, tables in place of charts.
+// The page's behaviour. Without it everything stays readable: pictures at one exposure, tables in place of charts.
 (function () {
 'use strict';
 
@@ -158,7 +158,7 @@ function setUpExposure(gallery, layers, redraw) {
   slider.addEventListener('input', apply);
   const setTo = (stops) => { slider.value = stops; apply(); };
   one(controls, '[data-auto]').addEventListener('click', () => setTo(autoExposure(hdr)));
-  one(controls, '[data-reset]').addEventListener('click', () => setTo(0));
+  one(controls, '[data-reset]').addEventListener('click', () => setTo(slider.defaultValue));
   controls.hidden = false;
   apply();
 }
@@ -270,7 +270,7 @@ function setUpGalleries() {
     setUpGallery(gallery).catch((error) => {
       const note = document.createElement('p');
       note.className = 'note';
-      note.textContent = `This browser shows the pictures at exposure 0 only (${error.message}).`;
+      note.textContent = `This browser shows the pictures at one exposure only (${error.message}).`;
       one(gallery, '.pictures').before(note);
     });
   }

@@ -38,6 +38,7 @@ struct Gallery {
   std::string caption;
   std::vector<Entry> entries;
   std::vector<ErrorMap> errors;
+  float exposure_stops = 0.0F;  // the pictures are first shown at
 };
 
 struct Series {

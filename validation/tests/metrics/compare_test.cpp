@@ -104,19 +104,26 @@ TEST(Compare, RelativeErrorOfADarkReferenceIsInfinite) {
 }
 
 TEST(Compare, ToneMapsByTheReferencesBrightness) {
-  // 5 and 2.5 become 1 and 0.5, sRGB 1.055 0.5^(1 / 2.4) - 0.055.
+  // 5 and 2.5 become 0.5 and 0.25, sRGB 1.055 x^(1 / 2.4) - 0.055.
+  const auto shown = [](double x) { return 1.055 * std::pow(x, 1.0 / 2.4) - 0.055; };
   const ImageComparison found = compare(constant(8, 8, 5.0F), constant(8, 8, 2.5F));
-  const double shown = 1.055 * std::pow(0.5, 1.0 / 2.4) - 0.055;
-  EXPECT_LE(std::abs(found.psnr + 20.0 * std::log10(1.0 - shown)),
-            1e-5);  // float curve: 1e-7 of the difference
-  EXPECT_LE(std::abs(found.ssim - (2.0 * shown + 1e-4) / (1.0 + shown * shown + 1e-4)), 1e-6);
+  const double a = shown(0.5);
+  const double b = shown(0.25);
+  EXPECT_LE(std::abs(found.psnr + 20.0 * std::log10(a - b)), 1e-5);  // float curve: 1e-7 of the difference
+  EXPECT_LE(std::abs(found.ssim - (2.0 * a * b + 1e-4) / (a * a + b * b + 1e-4)), 1e-6);
   // A reference without light is shown as it is: black against 0.5 of white.
   const double dark = compare(constant(8, 8, 0.0F), constant(8, 8, 0.5F)).psnr;
-  EXPECT_LE(std::abs(dark + 20.0 * std::log10(shown)), 1e-5);
-  // What clips in both looks the same, as documented; the plain errors still see it.
-  const ImageComparison clipped = compare(constant(8, 8, 1.0F), constant(8, 8, 2.0F));
-  EXPECT_EQ(clipped.psnr, kInfinity);
-  EXPECT_EQ(clipped.relative_rmse, 1.0);
+  EXPECT_LE(std::abs(dark + 20.0 * std::log10(shown(0.5))), 1e-5);
+  // A brighter test shows up to twice white; what clips in both looks the same, as documented, and the plain errors still see it.
+  EXPECT_LE(std::abs(compare(constant(8, 8, 1.0F), constant(8, 8, 9.0F)).psnr +
+                     20.0 * std::log10(1.0 - shown(0.5))),
+            1e-5);
+  Image sparkling = make_image(20, 10, Rgb(1.0F));
+  sparkling.pixels[0] = Rgb(10.0F);
+  Image brighter = sparkling;
+  brighter.pixels[0] = Rgb(20.0F);
+  EXPECT_EQ(compare(layered(sparkling), layered(brighter)).psnr, kInfinity);
+  EXPECT_EQ(compare(layered(sparkling), layered(brighter)).max_abs, 10.0);
 }
 
 TEST(Compare, IsIndependentOfTheUnitOfRadiance) {
@@ -137,9 +144,11 @@ TEST(Compare, WhiteIsTheNinetyNinthPercentile) {
   // One firefly in 200 pixels does not set the exposure, three do.
   Image reference = make_image(20, 10, Rgb(1.0F));
   const LayeredImage half = constant(20, 10, 0.5F);
+  const auto shown = [](double x) { return 1.055 * std::pow(x, 1.0 / 2.4) - 0.055; };
   const double plain = compare(layered(reference), half).psnr;
-  reference.pixels[0] = Rgb(1e4F);
-  EXPECT_LE(std::abs(compare(layered(reference), half).psnr - plain), 1e-9);
+  reference.pixels[0] = Rgb(1e4F);  // clips; the other 199 are shown as before
+  const double squares = 199.0 * std::pow(shown(0.5) - shown(0.25), 2) + std::pow(1.0 - shown(0.25), 2);
+  EXPECT_LE(std::abs(compare(layered(reference), half).psnr + 10.0 * std::log10(squares / 200.0)), 1e-5);
   reference.pixels[1] = reference.pixels[2] = Rgb(1e4F);
   EXPECT_GE(compare(layered(reference), half).psnr, plain + 3.0);  // now almost everything is near black
 }
@@ -168,8 +177,8 @@ TEST(CompareFaults, NothingComparedPassesNothing) {
   const ImageComparison found = compare(constant(4, 4, kNanF), constant(4, 4, 1.0F));
   EXPECT_EQ(found.pixels, 0U);
   EXPECT_EQ(found.nonfinite, 16U);
-  for (const char* metric : {"rmse", "relative_rmse", "mse", "mse_unbiased", "max_abs", "mean_signed",
-                             "mean_signed_stderr", "bias_z", "psnr", "flip_mean", "ssim"}) {
+  for (const char* metric : {"rmse", "relative_rmse", "relmse", "mse", "mse_unbiased", "max_abs",
+                             "mean_signed", "mean_signed_stderr", "bias_z", "psnr", "flip_mean", "ssim"}) {
     EXPECT_TRUE(exceeds(found, metric, 1e30)) << metric;
     EXPECT_TRUE(falls_below(found, metric, -1e30)) << metric;
   }
@@ -394,11 +403,11 @@ TEST(CompareNoise, AnExactOffsetIsInfinitelySignificant) {
 TEST(CompareVerdict, NamesAreThoseOfTheJson) {
   const std::map<std::string, double> values = as_map(ImageComparison{});
   for (const char* name :
-       {"rmse", "relative_rmse", "mse", "mse_unbiased", "max_abs", "mean_signed", "mean_signed_stderr",
-        "bias_z", "psnr", "flip_mean", "ssim", "pixels", "nonfinite"}) {
+       {"rmse", "relative_rmse", "relmse", "mse", "mse_unbiased", "max_abs", "mean_signed",
+        "mean_signed_stderr", "bias_z", "psnr", "flip_mean", "ssim", "pixels", "nonfinite"}) {
     EXPECT_TRUE(values.contains(name)) << name;
   }
-  EXPECT_EQ(values.size(), 13U);
+  EXPECT_EQ(values.size(), 14U);
 }
 
 TEST(CompareVerdict, IsStrictAndJudgesSignedMetricsByMagnitude) {

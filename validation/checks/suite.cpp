@@ -1,0 +1,16 @@
+#include "validation/checks/suite.hpp"
+
+namespace plumbline::checks {
+
+const std::vector<Family>& families() {
+  static const std::vector<Family> all = {
+      {"basis", "orthonormality, signs, addition theorem, clamped cosine", check_basis},
+      {"projection", "coefficients of each environment, convergence with bands", check_projection},
+      {"transfer", "transfer vectors against closed forms", check_transfer},
+      {"furnace", "white furnace on each scene", check_furnace},
+      {"images", "PRT images against path-traced ones", check_images},
+  };
+  return all;
+}
+
+}  // namespace plumbline::checks

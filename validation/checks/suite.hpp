@@ -1,0 +1,35 @@
+// validation/checks/suite.hpp: the check families of `plumbline validate`. Each adds its findings, charts, tables and pictures to a report.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "validation/checks/case.hpp"
+#include "validation/report/report.hpp"
+
+namespace plumbline::checks {
+
+/// The basis itself: orthonormality (Gram matrix), signs and order, the addition theorem, the clamped cosine.
+void check_basis(const Suite& suite, report::Report& report);
+
+/// Each environment's coefficients: against Monte Carlo with the reference's light sampling, Bessel's inequality, convergence with bands.
+void check_projection(const Suite& suite, report::Report& report);
+
+/// Transfer against closed forms: convex body, infinite corner, sphere on a plane.
+void check_transfer(const Suite& suite, report::Report& report);
+
+/// Path tracer and transfer in a white furnace, on each scene.
+void check_furnace(const Suite& suite, report::Report& report);
+
+/// Images of shadowed PRT against direct-light path tracing, under the band-limited and under the full light.
+void check_images(const Suite& suite, report::Report& report);
+
+struct Family {
+  std::string name;
+  std::string description;
+  void (*run)(const Suite&, report::Report&);
+};
+/// All, in the order they run.
+[[nodiscard]] const std::vector<Family>& families();
+
+}  // namespace plumbline::checks
