@@ -59,13 +59,14 @@ bool is_mutually_visible(const World& world, const trace::SurfacePoint& a, const
   return !world.caster.is_occluded({origin, segment / length, length});
 }
 
-RgbD sky_by_light(const World& world, const trace::SurfacePoint& point, const Vec2& u) {
+/// Splitting counts in the weights: n samples of density p_l beside one of density p_b (Veach's multi-sample power heuristic).
+RgbD sky_by_light(const World& world, const trace::SurfacePoint& point, std::uint32_t splits, const Vec2& u) {
   const std::optional<light::DirectionSample> sample = world.environment_sampler.sample(u);
   if (!sample || is_black(sample->radiance)) return RgbD(0.0);
   const double cosine = received_cosine(point, sample->direction);
   if (!(cosine > 0.0)) return RgbD(0.0);
   if (!is_visible(world, point, sample->direction, std::numeric_limits<float>::infinity())) return RgbD(0.0);
-  const double weight = power_heuristic(sample->pdf, cosine * kInvPi);
+  const double weight = power_heuristic(splits * sample->pdf, cosine * kInvPi);
   return RgbD(sample->radiance) * (weight * cosine / sample->pdf);
 }
 
@@ -106,10 +107,23 @@ RgbD punctual_by_light(const World& world, const trace::SurfacePoint& point, flo
   return RgbD(sample.irradiance) * (cosine * total / weight);
 }
 
-/// Irradiance straight from the lights, drawn from the lights.
-RgbD direct_by_light(const World& world, const trace::SurfacePoint& point, Sampler& sampler) {
+/// Light samples of the sky at the first vertex: they are most of the noise of a scene under an HDR sky, and cost one shadow ray each.
+constexpr std::uint32_t kSkySplits = 4;
+
+RgbD sky_by_light(const World& world, const trace::SurfacePoint& point, std::uint32_t splits,
+                  Sampler& sampler) {
+  const Sampler::Pair pair = sampler.next_pair();
   RgbD sum(0.0);
-  if (world.is_sky_sampled && !world.is_sky_black) sum += sky_by_light(world, point, sampler.next_2d());
+  for (std::uint32_t s = 0; s < splits; ++s)
+    sum += sky_by_light(world, point, splits, sampler.point(pair, s, splits));
+  return sum / static_cast<double>(splits);
+}
+
+/// Irradiance straight from the lights, drawn from the lights; `splits` samples of the sky.
+RgbD direct_by_light(const World& world, const trace::SurfacePoint& point, std::uint32_t splits,
+                     Sampler& sampler) {
+  RgbD sum(0.0);
+  if (world.is_sky_sampled && !world.is_sky_black) sum += sky_by_light(world, point, splits, sampler);
   if (!world.emitters.is_empty()) {
     const float pick = sampler.next_1d();
     sum += emitters_by_light(world, point, pick, sampler.next_2d());
@@ -120,10 +134,10 @@ RgbD direct_by_light(const World& world, const trace::SurfacePoint& point, Sampl
 
 /// The environment seen along a cosine-distributed direction of density `pdf`: irradiance estimate pi L,
 /// weighted.
-RgbD sky_by_direction(const World& world, const Vec3& direction, double pdf) {
+RgbD sky_by_direction(const World& world, const Vec3& direction, std::uint32_t splits, double pdf) {
   if (world.is_sky_black) return RgbD(0.0);
   const double weight =
-      world.is_sky_sampled ? power_heuristic(pdf, world.environment_sampler.pdf(direction)) : 1.0;
+      world.is_sky_sampled ? power_heuristic(pdf, splits * world.environment_sampler.pdf(direction)) : 1.0;
   return RgbD(light::radiance(world.environment, direction)) * (kPi * weight);
 }
 
@@ -158,7 +172,8 @@ void add_irradiance(const World& world, const trace::SurfacePoint& start, int ma
   Rgb throughput(1.0F);
   for (int bounce = 0;; ++bounce) {
     // 1. Light drawn from the lights.
-    add(terms, bounce, RgbD(throughput) * direct_by_light(world, point, sampler));
+    const std::uint32_t splits = bounce == 0 ? kSkySplits : 1;
+    add(terms, bounce, RgbD(throughput) * direct_by_light(world, point, splits, sampler));
 
     // 2. A direction in proportion to the cosine; below the surface nothing arrives.
     const Vec3 direction = sample_cosine_hemisphere(point.shading_normal, sampler.next_2d());
@@ -172,7 +187,7 @@ void add_irradiance(const World& world, const trace::SurfacePoint& start, int ma
     const bool is_last = bounce == max_bounces;
     if (is_last && world.emitters.is_empty()) {
       if (!world.is_sky_black && !world.caster.is_occluded(ray)) {
-        add(terms, bounce, RgbD(throughput) * sky_by_direction(world, direction, pdf));
+        add(terms, bounce, RgbD(throughput) * sky_by_direction(world, direction, splits, pdf));
       }
       return;
     }
@@ -180,7 +195,7 @@ void add_irradiance(const World& world, const trace::SurfacePoint& start, int ma
 
     // 4. Light met by that direction.
     if (!meeting) {
-      add(terms, bounce, RgbD(throughput) * sky_by_direction(world, direction, pdf));
+      add(terms, bounce, RgbD(throughput) * sky_by_direction(world, direction, splits, pdf));
       return;
     }
     add(terms, bounce, RgbD(throughput) * emitter_by_direction(world, *meeting, direction, pdf));

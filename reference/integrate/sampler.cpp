@@ -48,18 +48,27 @@ std::uint64_t mix(std::uint64_t value) {
 }
 
 Sampler::Sampler(std::uint64_t seed, std::uint64_t stream, std::uint32_t randomisation, std::uint32_t index)
-    : key_(mix(mix(mix(seed + 0x9E3779B97F4A7C15ULL) ^ stream) + randomisation)),
-      reversed_index_(reverse_bits(index)) {}
+    : key_(mix(mix(mix(seed + 0x9E3779B97F4A7C15ULL) ^ stream) + randomisation)), index_(index) {}
 
-Vec2 Sampler::next_2d() {
+Sampler::Pair Sampler::next_pair() {
   const std::uint64_t a = mix(key_ + 0x9E3779B97F4A7C15ULL * ++dimension_);
-  const std::uint64_t b = mix(a + 0x9E3779B97F4A7C15ULL);
+  // One multiplication more makes a third 32-bit number: its high half depends on all of a.
+  const std::uint64_t b = a * 0xD1342543DE82EF95ULL;
+  return {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(a >> 32U),
+          static_cast<std::uint32_t>(b >> 32U)};
+}
+
+Vec2 Sampler::point(const Pair& pair, std::uint32_t split, std::uint32_t splits) const {
   // The shuffled index, still least significant bit first after the two reversals of the scramble cancel.
   const std::uint32_t index =
-      reverse_bits(permute_from_below(reversed_index_, static_cast<std::uint32_t>(a)));
-  const std::uint32_t x = permute_from_below(index, static_cast<std::uint32_t>(a >> 32U));
-  const std::uint32_t y = permute_from_below(sobol_second(index), static_cast<std::uint32_t>(b));
+      reverse_bits(permute_from_below(reverse_bits(index_ * splits + split), pair.shuffle));
+  const std::uint32_t x = permute_from_below(index, pair.scramble_x);
+  const std::uint32_t y = permute_from_below(sobol_second(index), pair.scramble_y);
   return {to_unit(reverse_bits(x)), to_unit(reverse_bits(y))};
+}
+
+Vec2 Sampler::next_2d() {
+  return point(next_pair(), 0, 1);
 }
 
 float Sampler::next_1d() {

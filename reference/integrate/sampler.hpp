@@ -23,9 +23,19 @@ class Sampler {
   [[nodiscard]] Vec2 next_2d();
   [[nodiscard]] float next_1d();
 
+  /// One pair of dimensions from which a sample draws several points (splitting).
+  struct Pair {
+    std::uint32_t shuffle = 0;
+    std::uint32_t scramble_x = 0;
+    std::uint32_t scramble_y = 0;
+  };
+  [[nodiscard]] Pair next_pair();
+  /// Point `split` of `splits` (a power of two): over all samples of a randomisation these are the points of one sequence too.
+  [[nodiscard]] Vec2 point(const Pair& pair, std::uint32_t split, std::uint32_t splits) const;
+
  private:
   std::uint64_t key_;
-  std::uint32_t reversed_index_;
+  std::uint32_t index_;
   std::uint32_t dimension_ = 0;
 };
 
