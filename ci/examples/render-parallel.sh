@@ -18,6 +18,9 @@ if ! [[ $shards =~ ^[1-9][0-9]*$ ]]; then
 fi
 plumbline=${PLUMBLINE:-plumbline}
 jobs=${JOBS:-$(nproc)}
+if [ "$shards" -eq 1 ]; then  # is the whole image, and nothing to merge
+  exec "$plumbline" render "$scene" -o "$output" "$@"
+fi
 launcher=${LAUNCHER:-}
 if [ -z "$launcher" ]; then
   # moreutils has another program of that name

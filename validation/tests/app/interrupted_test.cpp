@@ -84,7 +84,7 @@ TEST(Interrupted, OutputIsOldOrNewWheneverTheKillComes) {
   const Clock::duration length = Clock::now() - begin;
   const std::string whole = read_file(folder / "whole.exr");
   const int nowhere = ::open("/dev/null", O_WRONLY);
-  constexpr int kKills = 8;
+  constexpr int kKills = 5;
   for (int k = 1; k <= kKills; ++k) {
     write_text_atomically(folder / "out.exr", "old");
     const pid_t child = start(with_output("out.exr"), nowhere, nowhere);
