@@ -33,15 +33,18 @@ struct Options {
   CLI::Option* has_seconds = nullptr;
 };
 
-integrate::Layers parse_layers(const std::string& list) {
+/// `all` means all that there can be: a single sample has no halves.
+integrate::Layers parse_layers(const std::string& list, bool can_be_halved) {
   integrate::Layers layers;
   std::stringstream words(list);
   for (std::string word; std::getline(words, word, ',');) {
     const bool is_all = word == "all";
     if (!is_all && word != "emission" && word != "bounces" && word != "albedo" && word != "normal" &&
-        word != "position" && word != "depth") {
-      throw InputError(fmt::format(
-          "--layers: expected emission, bounces, albedo, normal, position, depth or all, got {}", word));
+        word != "position" && word != "depth" && word != "direct" && word != "indirect" && word != "halves") {
+      throw InputError(
+          fmt::format("--layers: expected emission, bounces, direct, indirect, halves, albedo, normal, "
+                      "position, depth or all, got {}",
+                      word));
     }
     layers.emission |= is_all || word == "emission";
     layers.bounces |= is_all || word == "bounces";
@@ -49,6 +52,9 @@ integrate::Layers parse_layers(const std::string& list) {
     layers.normal |= is_all || word == "normal";
     layers.position |= is_all || word == "position";
     layers.depth |= is_all || word == "depth";
+    layers.direct |= is_all || word == "direct";
+    layers.indirect |= is_all || word == "indirect";
+    layers.halves |= word == "halves" || (is_all && can_be_halved);
   }
   return layers;
 }
@@ -77,7 +83,8 @@ integrate::RenderSettings settings_of(const Options& options) {
   settings.seed = options.seed;
   settings.threads = options.threads;
   settings.shard = parse_shard(options.shard);
-  settings.layers = parse_layers(options.layers);
+  settings.layers = parse_layers(
+      options.layers, settings.samples_per_pixel > 1 || settings.target_error || settings.max_seconds);
   settings.progress = progress_bar("render");
   return settings;
 }
@@ -199,8 +206,11 @@ void register_render(CLI::App& app, Action& chosen) {
                    "render part i of N (i/N); `plumbline merge` puts the parts together");
   verb->add_option("--threads", options->threads, "0 = all; never changes the image")
       ->check(CLI::Range(0, 4096));
-  verb->add_option("--layers", options->layers,
-                   "further layers: emission,bounces,albedo,normal,position,depth or all");
+  verb->add_option(
+      "--layers", options->layers,
+      "further layers: emission (light seen directly), bounces (bounce0 ...), direct (= bounce0), "
+      "indirect (bounces 1 and more), halves (a, b: means of two independent halves of the "
+      "samples), albedo, normal, position, depth; a list with commas, or all");
   verb->add_option("--json", options->json, "write a summary to this file, or - for standard output");
   verb->footer("Example: plumbline render builtin:cornell -o cornell.exr --spp 256 --layers bounces");
   verb->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
