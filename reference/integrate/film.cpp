@@ -1,6 +1,7 @@
 #include "reference/integrate/film.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace plumbline::integrate {
@@ -51,6 +52,30 @@ RgbEstimate combined(const RgbEstimate& a, const RgbEstimate& b) {
   const RgbD eb = wb * b.standard_error;
   result.standard_error = glm::sqrt(ea * ea + eb * eb);
   return result;
+}
+
+OverallError overall_error(std::span<const RgbEstimate> estimates) {
+  double sum = 0.0;
+  double variance = 0.0;
+  for (const RgbEstimate& estimate : estimates) {
+    sum += estimate.mean.x + estimate.mean.y + estimate.mean.z;
+    variance += glm::dot(estimate.standard_error, estimate.standard_error);
+  }
+  const double values = 3.0 * static_cast<double>(estimates.size());
+  const double root = std::sqrt(variance / values);
+  const double mean = sum / values;
+  if (root == 0.0) return {mean, 0.0};
+  return {mean, mean > 0.0 ? root / mean : std::numeric_limits<double>::infinity()};
+}
+
+// The standard error falls at least as fast as the root of the samples: n (e / target)^2 are enough.
+int samples_towards(double target_error, std::int64_t done, double relative_error) {
+  constexpr double kMaxRound = 1 << 20;
+  const double ratio = relative_error / target_error;
+  const double missing = static_cast<double>(done) * (ratio * ratio - 1.0);
+  double wanted = 3.0 * static_cast<double>(done);
+  if (std::isfinite(missing)) wanted = std::min(wanted, 1.1 * missing);
+  return static_cast<int>(std::clamp(std::ceil(wanted), static_cast<double>(kRandomisations), kMaxRound));
 }
 
 }  // namespace plumbline::integrate

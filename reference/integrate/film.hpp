@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "reference/base/vector.hpp"
@@ -48,5 +49,17 @@ struct SamplePlace {
 /// Estimates of the same thing from independent rounds, weighted by their samples (weights that do not depend
 /// on the values keep the mean unbiased).
 [[nodiscard]] RgbEstimate combined(const RgbEstimate& a, const RgbEstimate& b);
+
+/// Error of many estimates (pixels, points) as one number.
+struct OverallError {
+  double mean = 0.0;  // over all estimates and channels
+  double relative =
+      0.0;  // root of the mean squared standard error over that mean; infinite when it is not > 0
+};
+[[nodiscard]] OverallError overall_error(std::span<const RgbEstimate> estimates);
+
+/// Samples that bring the relative error of `done` samples to the target, with a tenth to spare: at most three
+/// times what there is (the error itself is an estimate), at least one for each randomisation.
+[[nodiscard]] int samples_towards(double target_error, std::int64_t done, double relative_error);
 
 }  // namespace plumbline::integrate

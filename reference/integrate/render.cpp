@@ -31,12 +31,21 @@ struct Extras {
   std::int64_t samples = 0;
 };
 
+/// Sums of the samples of even and of odd randomisations: randomisations are independent, so the halves are.
+struct Halves {
+  RgbD sums[2] = {RgbD(0.0), RgbD(0.0)};
+  std::int64_t samples[2] = {0, 0};
+};
+
 struct Film {
   int width = 0;
   int height = 0;
   std::vector<RgbEstimate> radiance;
   std::vector<Extras> extras;                  // empty when no layer needs it
   std::vector<std::vector<RgbD>> bounce_sums;  // [layer][pixel]
+  std::vector<RgbD> direct_sums;               // this and the next two are empty unless asked for
+  std::vector<RgbD> indirect_sums;
+  std::vector<Halves> halves;
 };
 
 struct Tile {
@@ -67,9 +76,15 @@ std::size_t bounce_layers(const RenderSettings& settings) {
 
 Film make_film(const RenderSettings& settings) {
   const auto pixels = static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height);
-  Film film{settings.width, settings.height, std::vector<RgbEstimate>(pixels), {}, {}};
+  Film film;
+  film.width = settings.width;
+  film.height = settings.height;
+  film.radiance.resize(pixels);
   if (needs_extras(settings.layers)) film.extras.resize(pixels);
   film.bounce_sums.assign(bounce_layers(settings), std::vector<RgbD>(pixels, RgbD(0.0)));
+  if (settings.layers.direct) film.direct_sums.assign(pixels, RgbD(0.0));
+  if (settings.layers.indirect) film.indirect_sums.assign(pixels, RgbD(0.0));
+  if (settings.layers.halves) film.halves.resize(pixels);
   return film;
 }
 
@@ -82,6 +97,20 @@ void add_extras(Extras& extras, const CameraSample& sample) {
   extras.normal += Vec3d(sample.point.shading_normal);
   extras.position += Vec3d(sample.point.position);
   extras.depth += static_cast<double>(sample.distance);
+}
+
+void add_bounces(const BounceTerms& terms, std::size_t pixel, Film& film) {
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    if (!film.bounce_sums.empty())
+      film.bounce_sums[std::min(k, film.bounce_sums.size() - 1)][pixel] += terms[k];
+    std::vector<RgbD>& sums = k == 0 ? film.direct_sums : film.indirect_sums;
+    if (!sums.empty()) sums[pixel] += terms[k];
+  }
+}
+
+void add_half(Halves& halves, std::uint32_t randomisation, const RgbD& value) {
+  halves.sums[randomisation % 2] += value;
+  ++halves.samples[randomisation % 2];
 }
 
 void render_pixel(const World& world, const scene::Camera& camera, const RenderSettings& settings, int round,
@@ -101,10 +130,8 @@ void render_pixel(const World& world, const scene::Camera& camera, const RenderS
     for (const RgbD& term : terms) sum += term;
     mean.add(s, sum);
     if (!film.extras.empty()) add_extras(film.extras[pixel], seen);
-    if (film.bounce_sums.empty()) continue;
-    for (std::size_t k = 0; k < terms.size(); ++k) {
-      film.bounce_sums[std::min(k, film.bounce_sums.size() - 1)][pixel] += terms[k];
-    }
+    if (!film.halves.empty()) add_half(film.halves[pixel], place.randomisation, sum);
+    add_bounces(terms, pixel, film);
   }
   film.radiance[pixel] = combined(film.radiance[pixel], mean.estimate());
 }
@@ -124,25 +151,6 @@ void render_round(const World& world, const scene::Camera& camera, const RenderS
   });
 }
 
-struct ImageError {
-  double mean = 0.0;
-  double relative = 0.0;
-};
-
-ImageError image_error(const Film& film) {
-  double sum = 0.0;
-  double variance = 0.0;
-  for (const RgbEstimate& pixel : film.radiance) {
-    sum += pixel.mean.x + pixel.mean.y + pixel.mean.z;
-    variance += glm::dot(pixel.standard_error, pixel.standard_error);
-  }
-  const double values = 3.0 * static_cast<double>(film.radiance.size());
-  const double root = std::sqrt(variance / values);
-  const double mean = sum / values;
-  if (root == 0.0) return {mean, 0.0};
-  return {mean, mean > 0.0 ? root / mean : std::numeric_limits<double>::infinity()};
-}
-
 void require_valid(const RenderSettings& s) {
   if (s.width < 1 || s.height < 1 || s.width > kMaxSide || s.height > kMaxSide) {
     throw InputError(
@@ -150,6 +158,8 @@ void require_valid(const RenderSettings& s) {
   }
   if (s.samples_per_pixel < 1)
     throw InputError(fmt::format("samples per pixel: expected at least 1, got {}", s.samples_per_pixel));
+  if (s.layers.halves && s.samples_per_pixel < 2 && !s.target_error && !s.max_seconds)
+    throw InputError("halves: expected at least 2 samples per pixel, got 1");
   if (s.max_bounces < 0) throw InputError(fmt::format("bounces: expected 0 or more, got {}", s.max_bounces));
   if (s.target_error && !(*s.target_error > 0.0))
     throw InputError(fmt::format("target error: expected > 0, got {}", *s.target_error));
@@ -165,48 +175,69 @@ void require_valid(const RenderSettings& s) {
   }
 }
 
-void put_pixel_layer(image::LayeredImage& out, const std::string& layer, const char* components,
-                     std::size_t pixel, const Vec3d& value) {
-  for (int c = 0; c < 3; ++c) out.channels[layer + components[c]][pixel] = static_cast<float>(value[c]);
+/// Writes one layer: `value_of(pixel)` gives its three components.
+template <class ValueOf>
+void put_layer(image::LayeredImage& out, const std::string& layer, const char* components, std::size_t pixels,
+               const ValueOf& value_of) {
+  for (int c = 0; c < 3; ++c) {
+    std::vector<float>& channel = out.channels[layer + components[c]];
+    channel.resize(pixels);
+    for (std::size_t p = 0; p < pixels; ++p) channel[p] = static_cast<float>(value_of(p)[c]);
+  }
+}
+
+// Pixels outside the shard have no samples (and a point that no ray hit no normal): 0, not 0 / 0.
+double divisor(std::int64_t count) {
+  return std::max(1.0, static_cast<double>(count));
+}
+
+/// What the surfaces look like: averages over the samples, or over those that hit something.
+void put_extras(const Film& film, const Layers& layers, image::LayeredImage& out) {
+  const std::vector<Extras>& extras = film.extras;
+  const std::size_t pixels = extras.size();
+  const auto samples = [&](std::size_t p) { return divisor(extras[p].samples); };
+  const auto hits = [&](std::size_t p) { return divisor(extras[p].hits); };
+  if (layers.emission)
+    put_layer(out, "emission.", "RGB", pixels, [&](auto p) { return extras[p].emission / samples(p); });
+  if (layers.albedo)
+    put_layer(out, "albedo.", "RGB", pixels, [&](auto p) { return extras[p].albedo / samples(p); });
+  if (layers.normal)
+    put_layer(out, "normal.", "XYZ", pixels, [&](auto p) { return extras[p].normal / hits(p); });
+  if (layers.position)
+    put_layer(out, "position.", "XYZ", pixels, [&](auto p) { return extras[p].position / hits(p); });
+  if (!layers.depth) return;
+  std::vector<float>& depth = out.channels["depth"];
+  for (std::size_t p = 0; p < pixels; ++p) depth.push_back(static_cast<float>(extras[p].depth / hits(p)));
+}
+
+/// The light's own parts: by bounces, and by halves of the samples.
+void put_parts(const Film& film, image::LayeredImage& out) {
+  const std::size_t pixels = film.radiance.size();
+  const auto put_sums = [&](const std::string& layer, const std::vector<RgbD>& sums) {
+    if (sums.empty()) return;
+    put_layer(out, layer, "RGB", pixels, [&](auto p) { return sums[p] / divisor(film.radiance[p].samples); });
+  };
+  for (std::size_t k = 0; k < film.bounce_sums.size(); ++k) {
+    put_sums(k < kBounceLayers ? fmt::format("bounce{}.", k) : "bounceRest.", film.bounce_sums[k]);
+  }
+  put_sums("direct.", film.direct_sums);
+  put_sums("indirect.", film.indirect_sums);
+  if (film.halves.empty()) return;
+  for (std::size_t half = 0; half < 2; ++half) {
+    put_layer(out, half == 0 ? "a." : "b.", "RGB", pixels,
+              [&](auto p) { return film.halves[p].sums[half] / divisor(film.halves[p].samples[half]); });
+  }
 }
 
 image::LayeredImage develop(const Film& film, const RenderSettings& settings) {
   image::LayeredImage out{film.width, film.height, {}, {}};
   const std::size_t pixels = film.radiance.size();
-  const auto make = [&](const std::string& layer, const char* components) {
-    for (int c = 0; c < 3; ++c) out.channels[layer + components[c]].resize(pixels);
-  };
-  make("", "RGB");
-  make("stderr.", "RGB");
-  out.channels["samples"].resize(pixels);
-  const Layers& layers = settings.layers;
-  if (layers.emission) make("emission.", "RGB");
-  if (layers.albedo) make("albedo.", "RGB");
-  if (layers.normal) make("normal.", "XYZ");
-  if (layers.position) make("position.", "XYZ");
-  if (layers.depth) out.channels["depth"].resize(pixels);
-  std::vector<std::string> bounce_names;
-  for (std::size_t k = 0; k < film.bounce_sums.size(); ++k) {
-    bounce_names.push_back(k < kBounceLayers ? fmt::format("bounce{}.", k) : "bounceRest.");
-    make(bounce_names.back(), "RGB");
-  }
-  for (std::size_t p = 0; p < pixels; ++p) {
-    const RgbEstimate& estimate = film.radiance[p];
-    put_pixel_layer(out, "", "RGB", p, estimate.mean);
-    put_pixel_layer(out, "stderr.", "RGB", p, estimate.standard_error);
-    out.channels["samples"][p] = static_cast<float>(estimate.samples);
-    const double n = std::max(1.0, static_cast<double>(estimate.samples));
-    for (std::size_t k = 0; k < bounce_names.size(); ++k)
-      put_pixel_layer(out, bounce_names[k], "RGB", p, film.bounce_sums[k][p] / n);
-    if (film.extras.empty()) continue;
-    const Extras& extras = film.extras[p];
-    const double hits = std::max(1.0, static_cast<double>(extras.hits));
-    if (layers.emission) put_pixel_layer(out, "emission.", "RGB", p, extras.emission / n);
-    if (layers.albedo) put_pixel_layer(out, "albedo.", "RGB", p, extras.albedo / n);
-    if (layers.normal) put_pixel_layer(out, "normal.", "XYZ", p, extras.normal / hits);
-    if (layers.position) put_pixel_layer(out, "position.", "XYZ", p, extras.position / hits);
-    if (layers.depth) out.channels["depth"][p] = static_cast<float>(extras.depth / hits);
-  }
+  put_layer(out, "", "RGB", pixels, [&](auto p) { return film.radiance[p].mean; });
+  put_layer(out, "stderr.", "RGB", pixels, [&](auto p) { return film.radiance[p].standard_error; });
+  std::vector<float>& samples = out.channels["samples"];
+  for (const RgbEstimate& estimate : film.radiance) samples.push_back(static_cast<float>(estimate.samples));
+  put_parts(film, out);
+  if (!film.extras.empty()) put_extras(film, settings.layers, out);
   return out;
 }
 
@@ -217,14 +248,9 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 /// Samples of the next round: towards the target, at most four times what there is, within the time left; 0 =
 /// stop.
 int next_round(const RenderSettings& settings, std::int64_t done, double relative_error, double seconds) {
-  constexpr double kMaxRound = 1 << 20;
-  double wanted = 3.0 * static_cast<double>(done);
-  if (settings.target_error) {
-    const double ratio = relative_error / *settings.target_error;
-    const double missing = static_cast<double>(done) * (ratio * ratio - 1.0);
-    if (std::isfinite(missing)) wanted = std::min(wanted, 1.1 * missing);
-  }
-  wanted = std::clamp(std::ceil(wanted), static_cast<double>(kRandomisations), kMaxRound);
+  // Without a target there is always more to do.
+  double wanted = settings.target_error ? samples_towards(*settings.target_error, done, relative_error)
+                                        : samples_towards(1.0, done, std::numeric_limits<double>::infinity());
   if (settings.max_seconds) {
     const double rate = static_cast<double>(done) / std::max(seconds, 1e-6);
     const double affordable = std::floor((*settings.max_seconds - seconds) * rate);
@@ -250,7 +276,7 @@ RenderResult render(const World& world, const scene::Camera& camera, const Rende
     render_round(world, camera, settings, round, samples, progress, film);
     result.samples_per_pixel += samples;
     result.seconds = seconds_since(start);
-    const ImageError error = image_error(film);
+    const OverallError error = overall_error(film.radiance);
     result.relative_error = error.relative;
     result.mean_radiance = error.mean;
     if (!is_progressive) break;

@@ -21,6 +21,9 @@ struct Layers {
   bool normal = false;
   bool position = false;
   bool depth = false;
+  bool direct = false;    // bounce 0
+  bool indirect = false;  // all further bounces together
+  bool halves = false;    // means `a` and `b` of the even and of the odd randomisations; needs 2 samples
 };
 
 /// Part `index` of `count`: every count-th 16 x 16 tile.
@@ -62,8 +65,8 @@ struct RenderResult {
 /// Box filter of one pixel. With bounce layers and a bounce limit above 15, terms from 16 on are summed in
 /// `bounceRest`. With target_error or max_seconds the image is made in rounds of growing size, the decision
 /// after each taken on the image's error.
-/// @throws InputError for sizes or counts below 1, a shard out of range, or a shard together with
-/// target_error / max_seconds.
+/// @throws InputError for sizes or counts below 1, a shard out of range, a shard together with
+/// target_error / max_seconds, or halves of a single sample.
 [[nodiscard]] RenderResult render(const World& world, const scene::Camera& camera,
                                   const RenderSettings& settings);
 

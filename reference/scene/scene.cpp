@@ -336,6 +336,15 @@ Rgb albedo_at(const Scene& scene, std::uint32_t triangle, Vec2 barycentrics) {
   return albedo;
 }
 
+std::vector<Rgb> vertex_albedos(const Scene& scene) {
+  constexpr Vec2 kCorners[3] = {{0.0F, 0.0F}, {1.0F, 0.0F}, {0.0F, 1.0F}};
+  std::vector<Rgb> albedos(scene.positions.size(), Rgb(0.0F));
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    for (int k = 0; k < 3; ++k) albedos[scene.triangles[t][k]] = albedo_at(scene, t, kCorners[k]);
+  }
+  return albedos;
+}
+
 std::string fingerprint(const Scene& scene) {
   Hasher hasher;
   hasher.add_array(scene.positions);

@@ -81,6 +81,10 @@ void validate(const Scene& scene, const std::string& where);
 /// x vertex colour. The scene has passed validate().
 [[nodiscard]] Rgb albedo_at(const Scene& scene, std::uint32_t triangle, Vec2 barycentrics);
 
+/// Albedo at every vertex, taken from the last triangle that uses it (they differ only where triangles of
+/// different materials share a vertex); 0 for a vertex that no triangle uses. The scene has passed validate().
+[[nodiscard]] std::vector<Rgb> vertex_albedos(const Scene& scene);
+
 /// 64-bit fingerprint (XXH3) of everything that affects an image, cameras included, as 16 hexadecimal digits.
 /// Names are left out.
 [[nodiscard]] std::string fingerprint(const Scene& scene);

@@ -33,18 +33,9 @@ int grid_of(int spp) {
   return grid;
 }
 
-std::vector<Rgb> vertex_albedos(const scene::Scene& scene) {
-  std::vector<Rgb> albedos(scene.positions.size(), Rgb(0.0F));
-  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
-    const Vec2 corners[3] = {{0.0F, 0.0F}, {1.0F, 0.0F}, {0.0F, 1.0F}};
-    for (int k = 0; k < 3; ++k) albedos[scene.triangles[t][k]] = scene::albedo_at(scene, t, corners[k]);
-  }
-  return albedos;
-}
-
 std::string csv_of(const scene::Scene& scene, const std::vector<Rgb>& unit_albedo_radiance) {
   std::string text = "x,y,z,nx,ny,nz,E_r,E_g,E_b,L_r,L_g,L_b\n";
-  const std::vector<Rgb> albedos = vertex_albedos(scene);
+  const std::vector<Rgb> albedos = scene::vertex_albedos(scene);
   for (std::size_t v = 0; v < unit_albedo_radiance.size(); ++v) {
     const RgbD irradiance = RgbD(unit_albedo_radiance[v]) * kPi;
     text += csv_line({scene.positions[v], scene.normals[v]}, irradiance,

@@ -38,15 +38,17 @@ struct Options {
   CLI::Option* has_seconds = nullptr;
 };
 
-integrate::Layers parse_layers(const std::string& list) {
+/// `all` means all that there can be: a single sample has no halves.
+integrate::Layers parse_layers(const std::string& list, bool can_be_halved) {
   integrate::Layers layers;
   if (list.empty()) return layers;
   for (const std::string_view word : split(list, ',')) {
     const bool is_all = word == "all";
     if (!is_all && word != "emission" && word != "bounces" && word != "albedo" && word != "normal" &&
-        word != "position" && word != "depth") {
+        word != "position" && word != "depth" && word != "direct" && word != "indirect" && word != "halves") {
       throw InputError(
-          fmt::format("--layers: expected emission, bounces, albedo, normal, position, depth or all, got {}",
+          fmt::format("--layers: expected emission, bounces, direct, indirect, halves, albedo, normal, "
+                      "position, depth or all, got {}",
                       quoted(one_line(word))));
     }
     layers.emission |= is_all || word == "emission";
@@ -55,6 +57,9 @@ integrate::Layers parse_layers(const std::string& list) {
     layers.normal |= is_all || word == "normal";
     layers.position |= is_all || word == "position";
     layers.depth |= is_all || word == "depth";
+    layers.direct |= is_all || word == "direct";
+    layers.indirect |= is_all || word == "indirect";
+    layers.halves |= word == "halves" || (is_all && can_be_halved);
   }
   return layers;
 }
@@ -92,7 +97,8 @@ integrate::RenderSettings settings_of(const Options& options) {
         "--shard: a part cannot know the whole image's error or share its time: give --spp instead of "
         "--target-error / --max-seconds");
   }
-  settings.layers = parse_layers(options.layers);
+  settings.layers = parse_layers(
+      options.layers, settings.samples_per_pixel > 1 || settings.target_error || settings.max_seconds);
   settings.progress = progress_bar("render");
   return settings;
 }
@@ -212,8 +218,11 @@ void register_render(CLI::App& app, Action& chosen) {
   verb->add_option("--shard", options->shard,
                    "render part i of N (i/N); `plumbline merge` puts the parts together");
   add_threads(*verb, options->threads);
-  verb->add_option("--layers", options->layers,
-                   "further layers: emission,bounces,albedo,normal,position,depth or all");
+  verb->add_option(
+      "--layers", options->layers,
+      "further layers: emission (light seen directly), bounces (bounce0 ...), direct (= bounce0), "
+      "indirect (bounces 1 and more), halves (a, b: means of two independent halves of the "
+      "samples), albedo, normal, position, depth; a list with commas, or all");
   add_json(*verb, options->json, "a summary");
   verb->footer("Example: plumbline render builtin:cornell -o cornell.exr --spp 256 --layers bounces");
   on_chosen(*verb, options, chosen, &run);

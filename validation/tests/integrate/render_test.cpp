@@ -42,7 +42,7 @@ bool is_bit_identical(const image::LayeredImage& a, const image::LayeredImage& b
 
 TEST(Render, IsBitIdenticalForAnyNumberOfThreads) {
   RenderSettings settings = small(1);
-  settings.layers = {true, true, true, true, true, true};
+  settings.layers = {true, true, true, true, true, true, true, true, true};
   settings.threads = 1;
   const RenderResult one = render(cornell(), cornell().scene.cameras[0], settings);
   for (const int threads : {2, 7}) {
@@ -129,6 +129,92 @@ TEST(Render, LayersAddUpToTheMean) {
       EXPECT_LE(std::abs(sum - mean), 1e-6 * 20 * (1.0 + mean));  // 20 layers rounded to float
     }
   }
+}
+
+TEST(Render, DirectAndIndirectAddUpToTheMean) {
+  RenderSettings settings = small(3);
+  settings.layers.bounces = settings.layers.emission = true;
+  settings.layers.direct = settings.layers.indirect = true;
+  const image::LayeredImage image = render(cornell(), cornell().scene.cameras[0], settings).image;
+  double most_indirect = 0.0;
+  for (std::size_t p = 0; p < image.channels.at("G").size(); ++p) {
+    const auto value = [&](const char* channel) {
+      return static_cast<double>(image.channels.at(channel)[p]);
+    };
+    const double mean = value("G");
+    // Four layers rounded to float.
+    EXPECT_LE(std::abs(value("direct.G") + value("indirect.G") + value("emission.G") - mean),
+              2.4e-7 * (1.0 + mean));
+    EXPECT_EQ(value("direct.G"), value("bounce0.G"));
+    most_indirect = std::max(most_indirect, value("indirect.G"));
+  }
+  EXPECT_GT(most_indirect, 0.01);
+  settings.max_bounces = 0;
+  const image::LayeredImage direct = render(cornell(), cornell().scene.cameras[0], settings).image;
+  for (const float v : direct.channels.at("indirect.G")) EXPECT_EQ(v, 0.0F);
+}
+
+TEST(Render, HalvesAverageToTheMean) {
+  RenderSettings settings = small(3);
+  settings.layers.halves = true;
+  for (const int samples : {2, 6, 16, 38}) {
+    settings.samples_per_pixel = samples;
+    const image::LayeredImage image = render(cornell(), cornell().scene.cameras[0], settings).image;
+    bool is_any_different = false;
+    for (std::size_t p = 0; p < image.channels.at("G").size(); ++p) {
+      const double a = image.channels.at("a.G")[p];
+      const double b = image.channels.at("b.G")[p];
+      const double mean = image.channels.at("G")[p];
+      EXPECT_LE(std::abs(0.5 * (a + b) - mean), 1.2e-7 * (a + b));  // three floats
+      is_any_different |= a != b;
+    }
+    EXPECT_TRUE(is_any_different);
+  }
+  settings.samples_per_pixel = 1;
+  EXPECT_THROW((void)render(cornell(), cornell().scene.cameras[0], settings), InputError);
+}
+
+/// Correlation of two channels over renders of different seeds, one value a pixel that varies.
+std::vector<double> correlations(const std::vector<image::LayeredImage>& images, const char* first,
+                                 const char* second) {
+  std::vector<double> result;
+  const double n = static_cast<double>(images.size());
+  for (std::size_t p = 0; p < images[0].channels.at("G").size(); ++p) {
+    double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
+    for (const auto& image : images) {
+      x += static_cast<double>(image.channels.at(first)[p]) / n;
+      y += static_cast<double>(image.channels.at(second)[p]) / n;
+    }
+    for (const auto& image : images) {
+      const double dx = static_cast<double>(image.channels.at(first)[p]) - x;
+      const double dy = static_cast<double>(image.channels.at(second)[p]) - y;
+      xx += dx * dx;
+      xy += dx * dy;
+      yy += dy * dy;
+    }
+    if (xx > 0.0 && yy > 0.0) result.push_back(xy / std::sqrt(xx * yy));
+  }
+  return result;
+}
+
+// The sample correlation of independent values has mean 0 whatever their distribution, and pixels are
+// independent of each other: its mean over pixels in standard errors is standard normal. That of a half and the
+// mean is about 0.7.
+TEST(Render, HalvesAreIndependent) {
+  RenderSettings settings = small(0);
+  settings.width = 24;
+  settings.height = 20;
+  settings.layers.halves = true;
+  std::vector<image::LayeredImage> images;
+  for (std::uint64_t seed = 1000; seed < 1024; ++seed) {
+    settings.seed = seed;
+    images.push_back(render(cornell(), cornell().scene.cameras[0], settings).image);
+  }
+  const metrics::Estimate halves = metrics::estimate(correlations(images, "a.G", "b.G"));
+  EXPECT_LE(std::abs(halves.mean), 4.0 * halves.standard_error);
+  EXPECT_LE(halves.standard_error, 0.0125);  // a correlation of 0.1 would be seen
+  const metrics::Estimate with_mean = metrics::estimate(correlations(images, "a.G", "G"));
+  EXPECT_GE(with_mean.mean, 0.5);
 }
 
 TEST(Render, TargetErrorIsReachedAndSaid) {

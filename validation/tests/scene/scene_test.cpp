@@ -134,6 +134,20 @@ Rgb texel_at(Vec2 uv, Wrap wrap) {
   return albedo_at(scene, 0, {0.0F, 0.0F});
 }
 
+TEST(Scene, VertexAlbedosAreThoseOfTheCorners) {
+  Scene scene = full_scene();
+  scene.positions.emplace_back(5.0F);  // no triangle uses it
+  scene.normals.emplace_back(0.0F, 1.0F, 0.0F);
+  scene.texcoords.emplace_back(0.0F);
+  scene.vertex_colors.emplace_back(1.0F);
+  const std::vector<Rgb> albedos = vertex_albedos(scene);
+  ASSERT_EQ(albedos.size(), 4U);
+  EXPECT_EQ(albedos[0], Rgb(0.25F, 0.0F, 0.0F));  // factor 1/2, texture 1/2, vertex colour
+  EXPECT_EQ(albedos[1], Rgb(0.0F, 0.25F, 0.0F));
+  EXPECT_EQ(albedos[2], Rgb(0.0F, 0.0F, 0.25F));
+  EXPECT_EQ(albedos[3], Rgb(0.0F));
+}
+
 TEST(Scene, TextureIsBilinearBetweenTexelCentres) {
   const Rgb white(1.0F);
   const Rgb red(1.0F, 0.0F, 0.0F);
