@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <mutex>
 
@@ -87,7 +86,7 @@ light::EnvironmentLayout layout_of(const std::string& text) {
 light::Environment load(const LightOptions& options) {
   if (options.source.empty()) return {"none", light::ConstantSky{}, {}, glm::mat3(1.0F), 0};
   light::Environment result;
-  if (std::filesystem::path(options.source).extension() == ".json") {
+  if (lower_case_extension(options.source) == ".json") {
     result = sh::band_limited_environment(sh::read_coefficients(options.source), options.source);
   } else {
     result = light::load_environment(options.source, layout_of(options.layout));
@@ -155,9 +154,10 @@ std::function<void(double)> progress_bar(const std::string& title) {
     const double left = fraction > 0.0 ? elapsed * (1.0 - fraction) / fraction : 0.0;
     constexpr int kWidth = 30;
     const int filled = static_cast<int>(fraction * kWidth);
-    fmt::print(stderr, "\r{} [{:=<{}}{: <{}}] {:3.0f} % {:6.1f} s left ", title, "", filled, "",
-               kWidth - filled, 100.0 * fraction, left);
-    if (is_end) fmt::print(stderr, "\r{: <80}\r", "");
+    std::string line = fmt::format("\r{} [{:=<{}}{: <{}}] {:3.0f} % {:6.1f} s left ", title, "", filled, "",
+                                   kWidth - filled, 100.0 * fraction, left);
+    if (is_end) line += fmt::format("\r{: <80}\r", "");
+    std::fputs(line.c_str(), stderr);  // whether anybody sees it does not matter
     std::fflush(stderr);
   };
 }

@@ -13,11 +13,10 @@
 #include "reference/scene/text.hpp"
 
 namespace plumbline::app {
-
 namespace {
 
 // Beyond this float cannot tell neighbouring degrees apart.
-constexpr double kMostDegrees = 1e6;
+constexpr double kMostDegrees = 1 << 24;
 
 [[noreturn]] void refuse(const std::string& option, const std::string& expected, const std::string& text) {
   throw InputError(fmt::format("{}: expected {}, got {}", replaced(option, ",", " or "), expected,

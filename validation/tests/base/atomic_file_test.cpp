@@ -1,6 +1,7 @@
 #include "reference/base/atomic_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <stdexcept>
 
@@ -46,6 +47,32 @@ TEST(AtomicFile, RefusesAMissingFolderAndAFolderAsFile) {
   EXPECT_THROW(write_text_atomically(folder, "x"), InputError);
   EXPECT_THROW((void)read_file(folder / "none.txt"), InputError);
   EXPECT_THROW((void)read_file(folder), InputError);
+}
+
+TEST(AtomicFile, RefusesBeforeTheWorkWhatCannotBeWritten) {
+  const fs::path folder = fresh_folder("atomic_before");
+  EXPECT_NO_THROW(require_writable(folder / "a.txt"));
+  EXPECT_THROW(require_writable(""), InputError);
+  EXPECT_THROW(require_writable(folder / std::string(300, 'a')), InputError);  // longer than names may be
+  EXPECT_THROW(require_writable("/proc/a.txt"), InputError);                   // root may not either
+  EXPECT_EQ(entries(folder), 0U);
+}
+
+// A rename would put a file where the pipe or, as root, a device is.
+TEST(AtomicFile, RefusesPipes) {
+  const fs::path pipe = fresh_folder("atomic_pipe") / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), S_IRUSR | S_IWUSR), 0);
+  EXPECT_THROW(write_text_atomically(pipe, "x"), InputError);
+  EXPECT_TRUE(fs::is_fifo(pipe));
+}
+
+TEST(AtomicFile, ReplacesWhatALinkPointsTo) {
+  const fs::path folder = fresh_folder("atomic_link");
+  write_text_atomically(folder / "file", "old");
+  fs::create_symlink("file", folder / "link");
+  write_text_atomically(folder / "link", "new");
+  EXPECT_TRUE(fs::is_symlink(folder / "link"));
+  EXPECT_EQ(read_file(folder / "file"), "new");
 }
 
 }  // namespace
