@@ -55,10 +55,17 @@ void add_light_options(CLI::App& verb, LightOptions& options, bool is_required) 
   verb.add_option("--env-layout", options.layout,
                   "how an image maps to directions (default: by its aspect ratio)")
       ->check(CLI::IsMember({"auto", "lat-long", "angular-map", "cube"}));
+  add_lookup_option(verb, options);
   verb.add_option("--rotate-env", options.rotation_deg,
                   "turn the environment about world X, then Y, then Z, degrees: X,Y,Z")
       ->delimiter(',')
       ->expected(3);
+}
+
+void add_lookup_option(CLI::App& verb, LightOptions& options) {
+  verb.add_option("--env-lookup", options.lookup,
+                  "how an image is read between texel centres: by nearest texel (default) or bilinear")
+      ->check(CLI::IsMember({"nearest", "bilinear"}));
 }
 
 namespace {
@@ -80,6 +87,7 @@ light::Environment load(const LightOptions& options) {
   } else {
     result = light::load_environment(options.source, layout_of(options.layout));
   }
+  if (options.lookup == "bilinear") result.lookup = light::Lookup::bilinear;
   if (result.negative_texels > 0)
     warn(fmt::format("{}: {} negative texels set to 0", options.source, result.negative_texels));
   if (options.rotation_deg.empty()) return result;

@@ -34,13 +34,16 @@ void add_camera_option(CLI::App& verb, SceneOptions& options);
 /// Loads and warns (on stderr) of triangles left out.
 [[nodiscard]] scene::Scene load(const SceneOptions& options);
 
-/// --env, --env-layout, --rotate-env.
+/// --env, --env-layout, --env-lookup, --rotate-env.
 struct LightOptions {
   std::string source;
   std::string layout = "auto";
+  std::string lookup = "nearest";
   std::vector<float> rotation_deg;
 };
 void add_light_options(CLI::App& verb, LightOptions& options, bool is_required);
+/// Only --env-lookup.
+void add_lookup_option(CLI::App& verb, LightOptions& options);
 /// An image, a builtin:NAME, or a .json of SH coefficients (then the band-limited light itself); black when
 /// nothing was asked for. Warns (on stderr) of negative texels that were set to 0.
 [[nodiscard]] light::Environment load(const LightOptions& options);

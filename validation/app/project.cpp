@@ -46,6 +46,7 @@ void register_project(CLI::App& app, Action& chosen) {
   verb->add_option("--env-layout", options->light.layout,
                    "how an image maps to directions (default: by its aspect ratio)")
       ->check(CLI::IsMember({"auto", "lat-long", "angular-map", "cube"}));
+  add_lookup_option(*verb, options->light);
   verb->add_option("--rotate-env", options->light.rotation_deg, "turn the environment first: X,Y,Z degrees")
       ->delimiter(',')
       ->expected(3);

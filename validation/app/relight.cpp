@@ -82,12 +82,14 @@ int run(const Options& options) {
                         {"plumbline.baked", options.input},
                         {"plumbline.sceneHash", scene::fingerprint(baked.scene)},
                         {"plumbline.environment", environment.name},
+                        {"plumbline.environmentLookup", options.light.lookup},
                         {"plumbline.bands", std::to_string(baked.transfer.bands)},
                         {"plumbline.transfer", std::string(to_string(baked.transfer.kind))}};
     image::write_exr(options.output, image);
   }
   write_json(options.json, {{"input", options.input},
                             {"environment", environment.name},
+                            {"environment_lookup", options.light.lookup},
                             {"bands", baked.transfer.bands},
                             {"transfer", std::string(to_string(baked.transfer.kind))},
                             {"backend", options.backend},

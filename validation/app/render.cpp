@@ -91,6 +91,7 @@ std::string reproducing_command(const Options& o, const integrate::RenderResult&
   if (!o.scene.camera.empty()) command += " --camera " + quoted(o.scene.camera);
   if (!o.light.source.empty()) command += " --env " + quoted(o.light.source);
   if (o.light.layout != "auto") command += " --env-layout " + o.light.layout;
+  if (o.light.lookup != "nearest") command += " --env-lookup " + o.light.lookup;
   if (!o.light.rotation_deg.empty()) {
     command += fmt::format(" --rotate-env {},{},{}", o.light.rotation_deg[0], o.light.rotation_deg[1],
                            o.light.rotation_deg[2]);
@@ -127,6 +128,7 @@ void set_attributes(image::LayeredImage& image, const Options& options, const in
                       {"plumbline.scene", options.scene.source},
                       {"plumbline.sceneHash", scene::fingerprint(world.scene)},
                       {"plumbline.environment", world.environment.name},
+                      {"plumbline.environmentLookup", options.light.lookup},
                       {"plumbline.camera", camera},
                       {"plumbline.seed", std::to_string(settings.seed)},
                       {"plumbline.samplesPerPixel", std::to_string(result.samples_per_pixel)},
@@ -163,6 +165,7 @@ int run(const Options& options) {
                             {"scene", options.scene.source},
                             {"scene_hash", result.image.attributes.at("plumbline.sceneHash")},
                             {"environment", world.environment.name},
+                            {"environment_lookup", options.light.lookup},
                             {"width", settings.width},
                             {"height", settings.height},
                             {"samples_per_pixel", result.samples_per_pixel},
