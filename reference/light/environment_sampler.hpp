@@ -22,10 +22,10 @@ struct DirectionSample {
 /// - cube map: every texel likewise, uniform on the face inside;
 /// - angular map and analytic: a table over lat-long cells filled from the largest of several lookups in each
 ///   cell and on its border, with 5 % uniform;
-/// - bilinear lookup: lat-long images by the interpolated magnitudes themselves, cell by cell between texel centres
-///   (the ratio of the two is within 1/2 and 3/2 beside a pole, and tends to 1 with smaller texels); cube and
-///   angular maps as above with each texel's magnitude the largest of the 3 x 3 around it: at most nine times the
-///   solid angle of a lone bright texel;
+/// - bilinear lookup: lat-long images by the interpolated magnitudes themselves, cell by cell between texel
+///   centres (density and magnitude differ by 1/2 to 3/2 beside a pole, and less the smaller the texels); cube
+///   and angular maps as above, each texel's magnitude the largest of the 3 x 3 around it: a lone bright texel
+///   costs a relative variance of up to 9 in a cube, 17 in an angular map and more at its rim;
 /// - suns: their own cones, uniform in solid angle.
 /// The density is the mixture of all of these: by power (magnitude times solid angle), but where there are
 /// both a sky and suns at least 10 % for each, for the places that see only one of them. Deterministic in u.

@@ -403,12 +403,12 @@ TEST(BilinearSampler, IsNearlyInProportion) {
   }
 }
 
-constexpr int kManySamples = 1000000;
+constexpr int kManySamples = 500000;
 constexpr int kBins = 32;
 
-// Sixteen points a bin each way: the midpoint rule's error is far below a count.
+// Eight points a bin each way: the midpoint rule's error is far below a count.
 ChiSquared held_against(const std::vector<double>& counts, const Density& pdf) {
-  return chi_squared(counts, testing::bin_probabilities(pdf, kBins, 16), kManySamples);
+  return chi_squared(counts, testing::bin_probabilities(pdf, kBins, 8), kManySamples);
 }
 
 TEST(BilinearSampler, SamplesItsPdf) {
@@ -483,22 +483,25 @@ TEST(BilinearSampler, KeepsTheVarianceOfAOneTexelSunBounded) {
   testing::expect_shown(testing::irradiance(turned, {0, 0, 1}), expected, "turned");
 }
 
-// Suns of one texel at the border of a face and of the disc: at most nine times the texel's share of samples.
+// Suns of one texel, 10^5 : 1, at the border of a face and of the disc. With p >= 0.95 L_max / (L_max omega_raised) on
+// the sun's support the relative variance is below omega_raised / (0.95 omega), omega = int L / L_max: 9 on a cube (3 x
+// 3 texels, no uniform share), 17 on an angular map, whose table adds half a texel on all sides, and 26 at its rim,
+// where the texels inwards are up to three times as large.
 TEST(BilinearSampler, EstimatesTheFluxOfOneTexelSunsInOtherLayouts) {
-  const auto expect_flux = [](const Environment& environment, const char* what) {
+  const auto expect_flux = [](const Environment& environment, double bound, const char* what) {
     const double expected =
         integral(environment, 1024, 512, [&](const Vec3& d) { return red(environment, d); });
     const Estimate found = testing::total(environment);
     // A kink or jump that is no line of the grid: 1e-3 of the flux.
     EXPECT_LE(std::abs(found.mean - expected), 4.0 * found.standard_error + 1e-3 * expected) << what;
-    EXPECT_LE(testing::kSamples * std::pow(found.standard_error / expected, 2.0), 9.0) << what;
+    EXPECT_LE(testing::kSamples * std::pow(found.standard_error / expected, 2.0), bound) << what;
   };
   expect_flux(cube([](unsigned face) {
                 return face == 2 ? one_texel_sun_image(8, 8, 0, 3) : image::make_image(8, 8, Rgb(1.0F));
               }),
-              "cube");
-  expect_flux(angular_map(one_texel_sun_image(24, 24, 16, 9)), "angular map");
-  expect_flux(angular_map(one_texel_sun_image(24, 24, 23, 12)), "rim");
+              9.0, "cube");
+  expect_flux(angular_map(one_texel_sun_image(24, 24, 16, 9)), 17.0, "angular map");
+  expect_flux(angular_map(one_texel_sun_image(24, 24, 23, 12)), 26.0, "rim");
 }
 
 TEST(BilinearSampler, TakesSignedImages) {
