@@ -31,12 +31,13 @@ enum class Window { none, hann, lanczos, gauss, laplacian };
 [[nodiscard]] double window_factor(Window window, int degree, int bands, double lambda);
 [[nodiscard]] ShRgb windowed(ShRgb function, Window window, double lambda = 0.0);
 
-/// c_lm = integral over the sphere of L(w) y_lm(w) dw, in world axes.
+/// c_lm = integral over the sphere of L(w) y_lm(w) dw, in world axes, L as environment.lookup reads the image.
 ///
 /// - constant, suns: closed forms.
-/// - lat-long: texels as regions of constant radiance, integrated exactly: the error is rounding, 1e-14.
-/// - cube map: Gauss nodes inside each texel, weights summing to its exact solid angle: relative error below
-///   1e-9 (2e-7 for faces of a single texel).
+/// - lat-long: integrated exactly, be texels regions of constant radiance or interpolated bilinearly: the error is
+///   rounding, 1e-14.
+/// - cube map: Gauss nodes inside each texel (bilinear: each cell between texel centres), weights summing to its
+///   exact solid angle: relative error below 1e-9 (2e-7 for faces of a single texel).
 /// - angular map: the same over the part inside the disc, all weights summing to 4 pi: relative error 1e-8.
 /// - analytic: Gauss-Legendre over each hemisphere of the sky's Y times uniform nodes, max(512, 8 bands) rows
 ///   and twice as many columns: float rounding for smooth skies and for a jump at the horizon, O(1/rows^2)

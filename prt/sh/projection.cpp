@@ -1,5 +1,6 @@
 // Projection of environments onto SH: project_radiance of lighting.hpp.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -60,15 +61,21 @@ struct Ring {
   double weight = 0.0;
 };
 
-/// integral of cos(m phi) and sin(m phi) over each column (or width * value at its middle): [column][cos 0 …
-/// n-1, sin 0 … n-1], for columns that start at phi = start_half_turns * pi.
-std::vector<double> azimuth_table(int columns, int bands, int start_half_turns, bool integrate_cells) {
+/// What a column of a grid stands for: a point at its middle (times its width), a box of its width, or a hat that
+/// falls to 0 at the middles of the columns beside it (the periodic sum of such hats where they overlap).
+enum class Column { point, box, hat };
+
+/// integral of cos(m phi) and sin(m phi) times the column's shape: [column][cos 0 … n-1, sin 0 … n-1], for columns
+/// that start at phi = start_half_turns * pi. With w the width, b = (2 / m) sin(m w / 2) times the value at the
+/// middle for a box, and b^2 / w for a hat, which is a box convolved with a box, over w.
+std::vector<double> azimuth_table(int columns, int bands, int start_half_turns, Column shape) {
   std::vector<double> table;
   table.reserve(2 * static_cast<std::size_t>(columns) * static_cast<std::size_t>(bands));
   std::vector<double> scale;
   for (int m = 0; m < bands; ++m) {
     const double width = 2.0 * kPi / columns;
-    scale.push_back(m > 0 && integrate_cells ? 2.0 / m * std::sin(0.5 * m * width) : width);
+    const double box = m > 0 ? 2.0 / m * std::sin(0.5 * m * width) : width;
+    scale.push_back(shape == Column::point ? width : shape == Column::box ? box : box * box / width);
     if (start_half_turns % 2 != 0 && m % 2 == 1) scale.back() = -scale.back();
   }
   // The angle m pi (2c + 1) / columns is reduced as an integer, so that it is exact for every m.
@@ -200,6 +207,7 @@ void require_square(const image::Image& image, const std::string& name) {
 struct Task {
   const std::string& name;
   Matrix rotation;  // environment to world
+  light::Lookup lookup;
   int bands;
   int threads;
 };
@@ -211,26 +219,59 @@ Coefficients project(const light::ConstantSky& sky, const Task& task) {
   return result;
 }
 
+/// Gauss nodes between two polar angles, the weights times a function linear in theta from `at_first` to
+/// `at_last`.
+void append_rings(double first, double last, double at_first, double at_last, const GaussLegendre& rule,
+                  std::vector<Ring>& rings) {
+  for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
+    const double height = 0.5 + 0.5 * rule.nodes[k];
+    const double theta = first + (last - first) * height;
+    const double sine = std::sin(theta);
+    const double shape = at_first + (at_last - at_first) * height;
+    rings.push_back({std::cos(theta), sine, 0.5 * (last - first) * rule.weights[k] * sine * shape});
+  }
+}
+
+/// Row of a bilinear image: rises from the centre of the row above and falls to that of the row below, and is 1
+/// from the first and last centre to the pole.
+std::vector<Ring> hat_rings(std::size_t row, std::size_t rows, const GaussLegendre& rule) {
+  const double step = kPi / static_cast<double>(rows);
+  const double centre = step * (static_cast<double>(row) + 0.5);
+  const bool is_top = row == 0;
+  const bool is_bottom = row + 1 == rows;
+  std::vector<Ring> rings;
+  append_rings(is_top ? 0.0 : centre - step, centre, is_top ? 1.0 : 0.0, 1.0, rule, rings);
+  append_rings(centre, is_bottom ? kPi : centre + step, 1.0, is_bottom ? 1.0 : 0.0, rule, rings);
+  return rings;
+}
+
+std::vector<Ring> box_rings(std::size_t row, std::size_t rows, const GaussLegendre& rule) {
+  const double step = kPi / static_cast<double>(rows);
+  std::vector<Ring> rings;
+  for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
+    const double theta = step * (static_cast<double>(row) + 0.5 + 0.5 * rule.nodes[k]);
+    const double sine = std::sin(theta);
+    rings.push_back({std::cos(theta), sine, 0.5 * step * rule.weights[k] * sine});
+  }
+  return rings;
+}
+
 // Q_lm sin(theta) is a trigonometric polynomial of degree l + 1 in theta (for every m: the root in sin(theta)
-// does not appear), so Gauss nodes in theta converge at once; their number makes the error rounding.
+// does not appear), so Gauss nodes in theta converge at once; their number makes the error rounding. A bilinear
+// image is a sum of products of a hat in phi and one in theta and separates in the same way; the linear factor in
+// theta costs one more node.
 Coefficients project(const light::LatLongSky& sky, const Task& task) {
   require_image(sky.image, task.name);
-  const int height = sky.image.height;
-  const double step = kPi / height;
-  const GaussLegendre rule = gauss_legendre(gauss_count(task.bands * step, 1e-16));
+  const bool is_bilinear = task.lookup == light::Lookup::bilinear;
   const auto width = static_cast<std::size_t>(sky.image.width);
+  const int count = gauss_count(task.bands * kPi / sky.image.height, 1e-16);
+  const GaussLegendre rule = gauss_legendre(is_bilinear ? count + 1 : count);
   Grid grid;
-  grid.rows = static_cast<std::size_t>(height);
+  grid.rows = static_cast<std::size_t>(sky.image.height);
   grid.columns = sky.image.width;
-  grid.azimuth = azimuth_table(grid.columns, task.bands, -1, true);
+  grid.azimuth = azimuth_table(grid.columns, task.bands, -1, is_bilinear ? Column::hat : Column::box);
   grid.rings = [&](std::size_t row) {
-    std::vector<Ring> rings;
-    for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
-      const double theta = step * (static_cast<double>(row) + 0.5 + 0.5 * rule.nodes[k]);
-      const double sine = std::sin(theta);
-      rings.push_back({std::cos(theta), sine, 0.5 * step * rule.weights[k] * sine});
-    }
-    return rings;
+    return is_bilinear ? hat_rings(row, grid.rows, rule) : box_rings(row, grid.rows, rule);
   };
   grid.read = [&](std::size_t row, std::span<Rgb> radiance) {
     std::copy_n(sky.image.pixels.begin() + static_cast<std::ptrdiff_t>(row * width), width, radiance.begin());
@@ -247,7 +288,7 @@ Coefficients project(const light::AnalyticSky& sky, const Task& task) {
   Grid grid;
   grid.rows = 2 * rule.nodes.size();
   grid.columns = columns;
-  grid.azimuth = azimuth_table(columns, task.bands, 0, false);
+  grid.azimuth = azimuth_table(columns, task.bands, 0, Column::point);
   const auto ring = [&](std::size_t row) -> Ring {
     const std::size_t half = rule.nodes.size();
     const double sign = row < half ? 1.0 : -1.0;
@@ -269,14 +310,15 @@ Coefficients project(const light::AnalyticSky& sky, const Task& task) {
                 task.rotation * grid_to_environment(), task.threads);
 }
 
-using TexelNodes = std::function<void(int x, int y, std::vector<SphereNode>& nodes)>;
+/// Appends the nodes of a rectangle of the image.
+using AppendNodes = std::function<void(const ImageRectangle& rectangle, std::vector<ImageNode>& nodes)>;
 
 /// Sum over the texels of a square image of radiance times the integral of the basis over the texel.
-Coefficients project_texels(const image::Image& image, const Task& task, const TexelNodes& append_nodes) {
+Coefficients project_texels(const image::Image& image, const Task& task, const AppendNodes& append_nodes) {
   const Basis<double> basis(task.bands);
   return sum_in_blocks(static_cast<std::size_t>(image.height), task.bands, task.threads,
                        [&](std::size_t row, Coefficients& sum) {
-                         std::vector<SphereNode> nodes;
+                         std::vector<ImageNode> nodes;
                          std::vector<double> values(size_of(task.bands));
                          std::vector<double> integral(values.size());
                          const auto y = static_cast<int>(row);
@@ -284,9 +326,9 @@ Coefficients project_texels(const image::Image& image, const Task& task, const T
                            const Rgb& texel = image.at(x, y);
                            if (is_black(texel)) continue;
                            nodes.clear();
-                           append_nodes(x, y, nodes);
+                           append_nodes(texel_rectangle(image.width, x, y), nodes);
                            std::fill(integral.begin(), integral.end(), 0.0);
-                           for (const SphereNode& node : nodes) {
+                           for (const ImageNode& node : nodes) {
                              const Vec3d d = task.rotation * node.direction;
                              basis.evaluate(d.x, d.y, d.z, values);
                              for (std::size_t i = 0; i < values.size(); ++i) {
@@ -299,7 +341,72 @@ Coefficients project_texels(const image::Image& image, const Task& task, const T
                        });
 }
 
-constexpr double kTexelTolerance = 1e-9;
+/// Cell 0 … size of one axis: from texel centre to texel centre, half cells at the ends; see environment_lookup.hpp.
+double cell_border(int size, int i) {
+  return std::clamp((2.0 * i - 1.0) / size - 1.0, -1.0, 1.0);
+}
+
+ImageRectangle cell_rectangle(int size, int x, int y) {
+  return {cell_border(size, x), cell_border(size, x + 1), cell_border(size, y), cell_border(size, y + 1)};
+}
+
+/// Bilinear interpolation in one cell of a square image, clamped at its border.
+class Patch {
+ public:
+  using TexelAt = std::function<const Rgb&(int x, int y)>;
+  Patch(int size, int x, int y, const TexelAt& texel) : size_(size), x_(x), y_(y) {
+    const auto at = [&](int i, int j) {
+      return RgbD(texel(std::clamp(x - 1 + i, 0, size - 1), std::clamp(y - 1 + j, 0, size - 1)));
+    };
+    corners_ = {at(0, 0), at(1, 0), at(0, 1), at(1, 1)};
+  }
+
+  [[nodiscard]] bool is_black() const {
+    return std::all_of(corners_.begin(), corners_.end(), [](const RgbD& c) { return c == RgbD(0.0); });
+  }
+  [[nodiscard]] RgbD radiance(double s, double t) const {
+    const double across = 0.5 * size_ * (s + 1.0) + 0.5 - x_;
+    const double down = 0.5 * size_ * (t + 1.0) + 0.5 - y_;
+    return glm::mix(glm::mix(corners_[0], corners_[1], across), glm::mix(corners_[2], corners_[3], across),
+                    down);
+  }
+
+ private:
+  int size_;
+  int x_;
+  int y_;
+  std::array<RgbD, 4> corners_;
+};
+
+/// Sum over the (size + 1)^2 cells of a square image of the integral of interpolated radiance times basis.
+Coefficients project_patches(int size, const Task& task, const Patch::TexelAt& texel,
+                             const AppendNodes& append_nodes) {
+  const Basis<double> basis(task.bands);
+  const auto rows = static_cast<std::size_t>(size) + 1;
+  return sum_in_blocks(rows, task.bands, task.threads, [&](std::size_t row, Coefficients& sum) {
+    std::vector<ImageNode> nodes;
+    std::vector<double> values(size_of(task.bands));
+    for (int x = 0; x <= size; ++x) {
+      const Patch patch(size, x, static_cast<int>(row), texel);
+      if (patch.is_black()) continue;
+      nodes.clear();
+      append_nodes(cell_rectangle(size, x, static_cast<int>(row)), nodes);
+      for (const ImageNode& node : nodes) {
+        const Vec3d d = task.rotation * node.direction;
+        basis.evaluate(d.x, d.y, d.z, values);
+        const RgbD radiance = node.weight * patch.radiance(node.s, node.t);
+        for (std::size_t i = 0; i < values.size(); ++i) sum[i] += values[i] * radiance;
+      }
+    }
+  });
+}
+
+/// The linear factors of bilinear interpolation cost one more node.
+GaussLegendre texel_rule(double phase, light::Lookup lookup) {
+  constexpr double kTexelTolerance = 1e-9;
+  const int count = gauss_count(phase, kTexelTolerance);
+  return gauss_legendre(lookup == light::Lookup::bilinear ? count + 1 : count);
+}
 
 Coefficients project(const light::CubeMapSky& sky, const Task& task) {
   Coefficients total(size_of(task.bands), RgbD(0.0));
@@ -308,32 +415,47 @@ Coefficients project(const light::CubeMapSky& sky, const Task& task) {
     require_square(image, task.name + ": cube face " + std::to_string(face));
     const int size = image.width;
     // 1 / r^(l + 3) has its poles one face half-width off the plane's centre: as a frequency, 3 + l.
-    const GaussLegendre rule = gauss_legendre(gauss_count(2.0 * (task.bands + 3) / size, kTexelTolerance));
-    const Coefficients part = project_texels(image, task, [&](int x, int y, std::vector<SphereNode>& nodes) {
-      append_cube_texel(face, size, x, y, rule, nodes);
-    });
+    const GaussLegendre rule = texel_rule(2.0 * (task.bands + 3) / size, task.lookup);
+    const AppendNodes nodes = [&](const ImageRectangle& rectangle, std::vector<ImageNode>& out) {
+      append_cube_nodes(face, rectangle, rule, out);
+    };
+    const auto texel = [&](int x, int y) -> const Rgb& { return image.at(x, y); };
+    const Coefficients part = task.lookup == light::Lookup::bilinear
+                                  ? project_patches(size, task, texel, nodes)
+                                  : project_texels(image, task, nodes);
     for (std::size_t i = 0; i < total.size(); ++i) total[i] += part[i];
   }
   return total;
 }
 
+/// Sum of the weights of all nodes of count x count rectangles of an angular map: 4 pi but for the error at the rim.
+double sphere_of_nodes(int count, ImageRectangle (*rectangle)(int size, int x, int y), int size,
+                       const AppendNodes& append_nodes) {
+  std::vector<ImageNode> nodes;
+  double sphere = 0.0;
+  for (int y = 0; y < count; ++y) {
+    for (int x = 0; x < count; ++x) {
+      nodes.clear();
+      append_nodes(rectangle(size, x, y), nodes);
+      for (const ImageNode& node : nodes) sphere += node.weight;
+    }
+  }
+  return sphere;
+}
+
 Coefficients project(const light::AngularMapSky& sky, const Task& task) {
   require_square(sky.image, task.name);
   const int size = sky.image.width;
-  const GaussLegendre rule =
-      gauss_legendre(gauss_count(2.0 * kPi * (task.bands + 1) / size, kTexelTolerance));
-  std::vector<SphereNode> nodes;
-  double sphere = 0.0;
-  for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
-      nodes.clear();
-      append_angular_texel(size, x, y, rule, nodes);
-      for (const SphereNode& node : nodes) sphere += node.weight;
-    }
-  }
-  Coefficients result = project_texels(sky.image, task, [&](int x, int y, std::vector<SphereNode>& out) {
-    append_angular_texel(size, x, y, rule, out);
-  });
+  const GaussLegendre rule = texel_rule(2.0 * kPi * (task.bands + 1) / size, task.lookup);
+  const AppendNodes nodes = [&](const ImageRectangle& rectangle, std::vector<ImageNode>& out) {
+    append_angular_nodes(rectangle, rule, out);
+  };
+  const auto texel = [&](int x, int y) -> const Rgb& { return light::angular_map_texel(sky.image, x, y); };
+  const bool is_bilinear = task.lookup == light::Lookup::bilinear;
+  Coefficients result =
+      is_bilinear ? project_patches(size, task, texel, nodes) : project_texels(sky.image, task, nodes);
+  const double sphere = is_bilinear ? sphere_of_nodes(size + 1, cell_rectangle, size, nodes)
+                                    : sphere_of_nodes(size, texel_rectangle, size, nodes);
   for (RgbD& c : result) c *= 4.0 * kPi / sphere;
   return result;
 }
@@ -370,7 +492,8 @@ Matrix require_rotation(const glm::mat3& rotation, const std::string& name) {
 
 ShRgb project_radiance(const light::Environment& environment, int bands, int threads) {
   require_bands(bands);
-  const Task task{environment.name, require_rotation(environment.rotation, environment.name), bands, threads};
+  const Task task{environment.name, require_rotation(environment.rotation, environment.name),
+                  environment.lookup, bands, threads};
   ShRgb result{bands, std::visit([&](const auto& sky) { return project(sky, task); }, environment.sky)};
   for (const light::SunDisc& sun : environment.suns) add_sun(sun, task, result.coefficients);
   return result;

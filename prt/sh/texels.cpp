@@ -52,13 +52,18 @@ double mapped(double low, double high, double node) {
   return 0.5 * (low + high) + 0.5 * (high - low) * node;
 }
 
-/// Right (s) and up (t) in [-1, 1]^2, inside the disc.
-SphereNode angular_node(double s, double t, double area) {
-  const double r = std::sqrt(s * s + t * t);
+double solid_angle_of(const ImageRectangle& r) {
+  return corner_solid_angle(r.s0, r.t0) - corner_solid_angle(r.s0, r.t1) - corner_solid_angle(r.s1, r.t0) +
+         corner_solid_angle(r.s1, r.t1);
+}
+
+/// Right and up in [-1, 1]^2, inside the disc.
+ImageNode angular_node(double s, double up, double area) {
+  const double r = std::sqrt(s * s + up * up);
   const double theta = kPi * r;
   // d omega = sin(theta) d theta d phi with theta = pi r and dA = r dr d phi.
   const double sine_over_r = r > 0.0 ? std::sin(theta) / r : kPi;
-  return {Vec3d(s * sine_over_r, t * sine_over_r, std::cos(theta)), kPi * sine_over_r * area};
+  return {Vec3d(s * sine_over_r, up * sine_over_r, std::cos(theta)), kPi * sine_over_r * area, s, -up};
 }
 
 }  // namespace
@@ -74,50 +79,49 @@ int gauss_count(double phase, double tolerance) {
   return kMaxGaussCount;
 }
 
-double cube_texel_solid_angle(int size, int x, int y) {
+ImageRectangle texel_rectangle(int size, int x, int y) {
   require_texel(size, x, y);
-  const double u0 = edge(size, x);
-  const double u1 = edge(size, x + 1);
-  const double v0 = edge(size, y);
-  const double v1 = edge(size, y + 1);
-  return corner_solid_angle(u0, v0) - corner_solid_angle(u0, v1) - corner_solid_angle(u1, v0) +
-         corner_solid_angle(u1, v1);
+  return {edge(size, x), edge(size, x + 1), edge(size, y), edge(size, y + 1)};
 }
 
-void append_cube_texel(int face, int size, int x, int y, const GaussLegendre& rule,
-                       std::vector<SphereNode>& nodes) {
-  const double solid_angle = cube_texel_solid_angle(size, x, y);
+double cube_texel_solid_angle(int size, int x, int y) {
+  return solid_angle_of(texel_rectangle(size, x, y));
+}
+
+void append_cube_nodes(int face, const ImageRectangle& rectangle, const GaussLegendre& rule,
+                       std::vector<ImageNode>& nodes) {
+  const double solid_angle = solid_angle_of(rectangle);
   const std::size_t first = nodes.size();
   double sum = 0.0;
   for (std::size_t j = 0; j < rule.nodes.size(); ++j) {
-    const double t = mapped(edge(size, y), edge(size, y + 1), rule.nodes[j]);
+    const double t = mapped(rectangle.t0, rectangle.t1, rule.nodes[j]);
     for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
-      const double s = mapped(edge(size, x), edge(size, x + 1), rule.nodes[i]);
+      const double s = mapped(rectangle.s0, rectangle.s1, rule.nodes[i]);
       const double square = 1.0 + s * s + t * t;
       const double length = std::sqrt(square);
       const double weight = rule.weights[i] * rule.weights[j] / (square * length);
       sum += weight;
-      nodes.push_back({cube_direction(face, s, t) / length, weight});
+      nodes.push_back({cube_direction(face, s, t) / length, weight, s, t});
     }
   }
   for (std::size_t k = first; k < nodes.size(); ++k) nodes[k].weight *= solid_angle / sum;
 }
 
-void append_angular_texel(int size, int x, int y, const GaussLegendre& rule, std::vector<SphereNode>& nodes) {
-  require_texel(size, x, y);
+void append_angular_nodes(const ImageRectangle& rectangle, const GaussLegendre& rule,
+                          std::vector<ImageNode>& nodes) {
   static const GaussLegendre kRimRule = gauss_legendre(8);
-  const double s0 = edge(size, x);
-  const double s1 = edge(size, x + 1);
-  const double t0 = -edge(size, y + 1);
-  const double t1 = -edge(size, y);
-  const double farthest = std::hypot(std::max(-s0, s1), std::max(-t0, t1));
+  const double s0 = rectangle.s0;
+  const double s1 = rectangle.s1;
+  const double lower = -rectangle.t1;
+  const double upper = -rectangle.t0;
+  const double farthest = std::hypot(std::max(-s0, s1), std::max(-lower, upper));
   const bool is_cut = farthest > 1.0;
   const GaussLegendre& used = is_cut ? kRimRule : rule;
   for (std::size_t i = 0; i < used.nodes.size(); ++i) {
     const double s = mapped(s0, s1, used.nodes[i]);
     const double chord = is_cut ? std::sqrt(std::max(0.0, (1.0 - s) * (1.0 + s))) : 1.0;
-    const double low = std::max(t0, -chord);
-    const double high = std::min(t1, chord);
+    const double low = std::max(lower, -chord);
+    const double high = std::min(upper, chord);
     if (low >= high) continue;
     for (std::size_t j = 0; j < used.nodes.size(); ++j) {
       const double area = 0.25 * (s1 - s0) * (high - low) * used.weights[i] * used.weights[j];

@@ -57,11 +57,14 @@ RgbEstimate combined(const RgbEstimate& a, const RgbEstimate& b) {
 OverallError overall_error(std::span<const RgbEstimate> estimates) {
   double sum = 0.0;
   double variance = 0.0;
+  double values = 0.0;
   for (const RgbEstimate& estimate : estimates) {
+    if (estimate.samples == 0) continue;  // another shard's
     sum += estimate.mean.x + estimate.mean.y + estimate.mean.z;
     variance += glm::dot(estimate.standard_error, estimate.standard_error);
+    values += 3.0;
   }
-  const double values = 3.0 * static_cast<double>(estimates.size());
+  if (values == 0.0) return {};
   const double root = std::sqrt(variance / values);
   const double mean = sum / values;
   if (root == 0.0) return {mean, 0.0};

@@ -44,20 +44,38 @@ const Rgb& texel_of(const image::Image& image, const Vec2& uv) {
   return image.at(texel.x, texel.y);
 }
 
-Rgb sky_radiance(const ConstantSky& sky, const Vec3& /*direction*/) {
+// (1 - f) a + f b rather than a + f (b - a): beside a sun of 10^5 the sky keeps its digits.
+template <class TexelAt>
+Rgb blended(const Neighbours& u, const Neighbours& v, const TexelAt& texel) {
+  const Rgb upper = glm::mix(texel(u.first, v.first), texel(u.second, v.first), u.fraction);
+  const Rgb lower = glm::mix(texel(u.first, v.second), texel(u.second, v.second), u.fraction);
+  return glm::mix(upper, lower, v.fraction);
+}
+
+Rgb sky_radiance(const ConstantSky& sky, const Vec3& /*direction*/, Lookup /*lookup*/) {
   return sky.radiance;
 }
-Rgb sky_radiance(const LatLongSky& sky, const Vec3& direction) {
-  return texel_of(sky.image, lat_long_from_direction(direction));
+Rgb sky_radiance(const LatLongSky& sky, const Vec3& direction, Lookup lookup) {
+  const Vec2 uv = lat_long_from_direction(direction);
+  if (lookup == Lookup::nearest) return texel_of(sky.image, uv);
+  return blended(wrapped_neighbours(uv.x, sky.image.width), clamped_neighbours(uv.y, sky.image.height),
+                 [&](int x, int y) { return sky.image.at(x, y); });
 }
-Rgb sky_radiance(const AngularMapSky& sky, const Vec3& direction) {
-  return texel_of(sky.image, angular_map_from_direction(direction));
+Rgb sky_radiance(const AngularMapSky& sky, const Vec3& direction, Lookup lookup) {
+  const Vec2 uv = angular_map_from_direction(direction);
+  if (lookup == Lookup::nearest) return texel_of(sky.image, uv);
+  return blended(clamped_neighbours(uv.x, sky.image.width), clamped_neighbours(uv.y, sky.image.height),
+                 [&](int x, int y) { return angular_map_texel(sky.image, x, y); });
 }
-Rgb sky_radiance(const CubeMapSky& sky, const Vec3& direction) {
+Rgb sky_radiance(const CubeMapSky& sky, const Vec3& direction, Lookup lookup) {
   const CubeCoordinate coordinate = cube_from_direction(direction);
-  return texel_of(sky.faces[static_cast<std::size_t>(coordinate.face)], coordinate.uv);
+  const image::Image& face = sky.faces[static_cast<std::size_t>(coordinate.face)];
+  if (lookup == Lookup::nearest) return texel_of(face, coordinate.uv);
+  return blended(clamped_neighbours(coordinate.uv.x, face.width),
+                 clamped_neighbours(coordinate.uv.y, face.height),
+                 [&](int x, int y) { return face.at(x, y); });
 }
-Rgb sky_radiance(const AnalyticSky& sky, const Vec3& direction) {
+Rgb sky_radiance(const AnalyticSky& sky, const Vec3& direction, Lookup /*lookup*/) {
   return sky.radiance(direction);
 }
 
@@ -92,7 +110,8 @@ glm::dmat3 rotation_about(int axis, double degrees) {
 
 Rgb radiance(const Environment& environment, const Vec3& direction) {
   const Vec3 local = to_environment_frame(environment, direction);
-  Rgb total = std::visit([&](const auto& sky) { return sky_radiance(sky, local); }, environment.sky);
+  Rgb total = std::visit([&](const auto& sky) { return sky_radiance(sky, local, environment.lookup); },
+                         environment.sky);
   for (const SunDisc& sun : environment.suns) {
     if (contains(sun, local)) total += sun.radiance;
   }
@@ -137,6 +156,17 @@ Vec3 direction_from_angular_map(const Vec2& uv) {
   const double theta = kPi * std::min(radius, 1.0);
   const double scale = std::sin(theta) / radius;
   return Vec3(Vec3d(scale * right, scale * up, std::cos(theta)));
+}
+
+// A texel reaches half a diagonal from its centre, sqrt(2) / width of the disc's radius: the texel that holds a point
+// so far inside the rim has its centre in the disc.
+const Rgb& angular_map_texel(const image::Image& image, int x, int y) {
+  const double right = (2.0 * x + 1.0) / image.width - 1.0;
+  const double down = (2.0 * y + 1.0) / image.height - 1.0;
+  const double radius = std::sqrt(right * right + down * down);
+  if (radius <= 1.0) return image.at(x, y);
+  const double scale = 0.5 * std::max(0.0, 1.0 - std::sqrt(2.0) / image.width) / radius;
+  return texel_of(image, Vec2(glm::dvec2(0.5 + scale * right, 0.5 + scale * down)));
 }
 
 // The face is that of the largest component; on an edge or corner x wins over y, and y over z.

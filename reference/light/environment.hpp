@@ -48,6 +48,12 @@ struct SunDisc {
 
 using Sky = std::variant<ConstantSky, LatLongSky, AngularMapSky, CubeMapSky, AnalyticSky>;
 
+/// How images are read between texel centres. `nearest`: each texel is a region of constant radiance.
+/// `bilinear`: continuous, the texel's own value at its centre. At borders (CONVENTIONS.md#environments): lat-long
+/// images wrap around in u and are clamped in v; the faces of a cube and the disc of an angular map are clamped,
+/// each by itself.
+enum class Lookup { nearest, bilinear };
+
 struct Environment {
   std::string name;
   Sky sky = ConstantSky{};
@@ -55,10 +61,11 @@ struct Environment {
   glm::mat3 rotation{1.0F};         // environment to world: the light arriving from R d is the file's at d
   std::size_t texels = 0;           // of the image file; 0 for what is built in
   std::size_t negative_texels = 0;  // set to 0 on loading, counted here
+  Lookup lookup = Lookup::nearest;  // no matter where there is no image
 };
 
 /// Radiance arriving from `direction` (unit). The one lookup: camera rays, light sampling and projection all
-/// use it. Images are looked up by nearest texel: each texel is a region of constant radiance.
+/// use it. Images are looked up as environment.lookup says.
 [[nodiscard]] Rgb radiance(const Environment& environment, const Vec3& direction);
 
 /// True when no direction has any radiance for certain (constant black and no suns, or black ones).
@@ -71,6 +78,10 @@ struct Environment {
 [[nodiscard]] Vec2 angular_map_from_direction(const Vec3& direction);
 /// uv must lie inside the inscribed disc.
 [[nodiscard]] Vec3 direction_from_angular_map(const Vec2& uv);
+/// The texel that stands for (x, y), inside the square image, in the bilinear lookup of an angular map: itself,
+/// or where its centre lies outside the inscribed disc, the texel on the same radius that holds the point half a
+/// texel's diagonal inside the rim (its centre is in the disc).
+[[nodiscard]] const Rgb& angular_map_texel(const image::Image& image, int x, int y);
 struct CubeCoordinate {
   int face = 0;  // +X -X +Y -Y +Z -Z
   Vec2 uv{0.0F};

@@ -30,6 +30,37 @@ struct Texel {
   return {texel_index(uv.x, width), texel_index(uv.y, height)};
 }
 
+/// The two neighbours of a coordinate in [0, 1] along one axis of an image, for bilinear lookups: cells run from
+/// texel centre to texel centre, cell c from texel c - 1 to texel c, so that there are count + 1 of them and the
+/// first and the last are half cells. The value is (1 - fraction) first + fraction second.
+struct Neighbours {
+  int cell = 0;  // 0 … count
+  int first = 0;
+  int second = 0;
+  float fraction = 0.0F;  // [0, 1]
+};
+
+/// Beyond the border is the texel at the border. A coordinate outside [0, 1] (and a NaN) stays in the image.
+[[nodiscard]] inline Neighbours clamped_neighbours(float coordinate, int count) {
+  const float end = static_cast<float>(count);
+  const float scaled = coordinate > 0.0F ? std::min(coordinate * end, end) : 0.0F;
+  const float shifted = scaled + 0.5F;  // > 0: truncation is floor
+  const int cell = std::min(static_cast<int>(shifted), count);
+  // Not from `shifted`, which has lost the low bits of small coordinates.
+  const float fraction = std::clamp((scaled - static_cast<float>(cell)) + 0.5F, 0.0F, 1.0F);
+  return {cell, std::max(cell - 1, 0), std::min(cell, count - 1), fraction};
+}
+
+/// Beyond the border is the other end: half cells 0 and count make up one cell, across the seam.
+[[nodiscard]] inline Neighbours wrapped_neighbours(float coordinate, int count) {
+  Neighbours result = clamped_neighbours(coordinate, count);
+  if (result.cell == 0 || result.cell == count) {
+    result.first = count - 1;
+    result.second = 0;
+  }
+  return result;
+}
+
 /// The point (s, t), from the top left in [-1, 1], of a cube face at distance 1; faces +X -X +Y -Y +Z -Z.
 [[nodiscard]] inline Vec3d cube_face_point(int face, double s, double t) {
   const std::array<Vec3d, 6> points{Vec3d(1.0, -t, -s), Vec3d(-1.0, -t, s), Vec3d(s, 1.0, t),

@@ -82,7 +82,7 @@ Vec3d around(const Vec3d& axis, double chord, double turns) {
 }  // namespace
 
 EnvironmentSampler::EnvironmentSampler(const Environment& environment) : environment_(&environment) {
-  SkyPart sky = make_sky_density(environment.sky, environment.name);
+  SkyPart sky = make_sky_density(environment.sky, environment.lookup, environment.name);
   sky_ = std::move(sky.density);
   add_cones();
   double cone_power = 0.0;

@@ -141,29 +141,72 @@ void require_texels(const Image& image, const std::string& name) {
                                image.pixels.size()));
 }
 
-SkyPart part_of(LatLongDensity density) {
+template <class Density>
+SkyPart part_of(Density density) {
   const double power = density.power();
   if (power > 0.0) return {std::move(density), power};
   return {};
 }
 
-SkyPart make_part(const ConstantSky& sky, const std::string& name) {
+// The magnitudes of an image, each the largest of the 3 x 3 texels around it: at every point the bilinear lookup is
+// at most this image's nearest texel, so that a density made for the nearest lookup of this image bounds it.
+template <class TexelAt>
+Image neighbourhood_peaks(const Image& image, const TexelAt& texel) {
+  Image across = image::make_image(image.width, image.height);
+  Image result = across;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      for (int i = std::max(x - 1, 0); i <= std::min(x + 1, image.width - 1); ++i)
+        across.at(x, y) = glm::max(across.at(x, y), Rgb(max_magnitude(texel(i, y))));
+    }
+  }
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      for (int j = std::max(y - 1, 0); j <= std::min(y + 1, image.height - 1); ++j)
+        result.at(x, y) = glm::max(result.at(x, y), across.at(x, j));
+    }
+  }
+  return result;
+}
+
+void require_finite(const Image& image, const std::string& name) {
+  for (const Rgb& texel : image.pixels) (void)magnitude_of(texel, name);
+}
+
+CubeMapSky neighbourhood_peaks(const CubeMapSky& sky) {
+  CubeMapSky result;
+  for (std::size_t face = 0; face < 6; ++face) {
+    const Image& image = sky.faces.at(face);
+    result.faces.at(face) = neighbourhood_peaks(image, [&](int x, int y) { return image.at(x, y); });
+  }
+  return result;
+}
+
+// A number in [0, 1) to one whose density is linear from `first` at 0 to `second` at 1, both >= 0:
+// the root of number (first + second) / 2 = first x + (second - first) x^2 / 2 without cancellation.
+double with_linear_density(double number, double first, double second) {
+  const double end = std::sqrt((1.0 - number) * first * first + number * second * second);
+  return first + end > 0.0 ? std::min(number * (first + second) / (first + end), 1.0) : number;
+}
+
+SkyPart make_part(const ConstantSky& sky, Lookup /*lookup*/, const std::string& name) {
   const double magnitude = magnitude_of(sky.radiance, name);
   if (magnitude > 0.0) return {UniformDensity{}, 4.0 * kPi * magnitude};
   return {};
 }
 
-SkyPart make_part(const LatLongSky& sky, const std::string& name) {
+SkyPart make_part(const LatLongSky& sky, Lookup lookup, const std::string& name) {
   const Image& image = sky.image;
   require_texels(image, name);
-  return part_of({image.width, image.height, [&](int row, std::span<double> peaks) {
-                    for (int x = 0; x < image.width; ++x) {
-                      peaks[static_cast<std::size_t>(x)] = magnitude_of(image.at(x, row), name);
-                    }
-                  }});
+  if (lookup == Lookup::bilinear) return part_of(BilinearLatLongDensity(image, name));
+  return part_of(LatLongDensity(image.width, image.height, [&](int row, std::span<double> peaks) {
+    for (int x = 0; x < image.width; ++x) {
+      peaks[static_cast<std::size_t>(x)] = magnitude_of(image.at(x, row), name);
+    }
+  }));
 }
 
-SkyPart make_part(const CubeMapSky& sky, const std::string& name) {
+SkyPart make_part(const CubeMapSky& sky, Lookup lookup, const std::string& name) {
   const int side = sky.faces[0].width;
   for (const Image& face : sky.faces) {
     require_texels(face, name);
@@ -171,30 +214,34 @@ SkyPart make_part(const CubeMapSky& sky, const std::string& name) {
     throw InputError(fmt::format("{}: a cube face of {}x{} texels, expected {}x{} as the first", name,
                                  face.width, face.height, side, side));
   }
-  for (const Image& face : sky.faces) {
-    for (const Rgb& texel : face.pixels) (void)magnitude_of(texel, name);
-  }
-  CubeDensity density(sky);
-  const double power = density.power();
-  if (power > 0.0) return {std::move(density), power};
-  return {};
+  for (const Image& face : sky.faces) require_finite(face, name);
+  if (lookup == Lookup::bilinear) return part_of(CubeDensity(neighbourhood_peaks(sky)));
+  return part_of(CubeDensity(sky));
 }
 
-SkyPart make_part(const AngularMapSky& sky, const std::string& name) {
-  require_texels(sky.image, name);
+// `map` is what is looked up by nearest texel.
+SkyPart part_of_angular_map(const Image& map, const std::string& name) {
   const auto is_dark = [](const Rgb& texel) { return plumbline::is_black(texel); };
-  if (std::all_of(sky.image.pixels.begin(), sky.image.pixels.end(), is_dark)) return {};
-  const int width = std::clamp(2 * sky.image.width, kLeastCells, kMostCells);
+  if (std::all_of(map.pixels.begin(), map.pixels.end(), is_dark)) return {};
+  const int width = std::clamp(2 * map.width, kLeastCells, kMostCells);
   const auto lookup = [&](const Vec3& direction) {
-    const Texel texel = texel_at(angular_map_from_direction(direction), sky.image.width, sky.image.height);
-    return sky.image.at(texel.x, texel.y);
+    const Texel texel = texel_at(angular_map_from_direction(direction), map.width, map.height);
+    return map.at(texel.x, texel.y);
   };
   std::vector<float> peaks = cell_peaks(lookup, name, width, width / 2);
-  raise_by_texels(peaks, width, width / 2, sky.image, name);
+  raise_by_texels(peaks, width, width / 2, map, name);
   return part_of(mixed_with_uniform(peaks, width, width / 2));
 }
 
-SkyPart make_part(const AnalyticSky& sky, const std::string& name) {
+SkyPart make_part(const AngularMapSky& sky, Lookup lookup, const std::string& name) {
+  require_texels(sky.image, name);
+  if (lookup == Lookup::nearest) return part_of_angular_map(sky.image, name);
+  require_finite(sky.image, name);
+  const auto texel = [&](int x, int y) { return angular_map_texel(sky.image, x, y); };
+  return part_of_angular_map(neighbourhood_peaks(sky.image, texel), name);
+}
+
+SkyPart make_part(const AnalyticSky& sky, Lookup /*lookup*/, const std::string& name) {
   if (!sky.radiance) throw InputError(name + ": an analytic sky without a function");
   constexpr int kHeight = kAnalyticCells / 2;
   return part_of(
@@ -250,6 +297,103 @@ double LatLongDensity::pdf(const Vec3& direction) const {
   return table_.probability(cell.y, cell.x) / cell_solid_angle(cell.y);
 }
 
+// Let s = (cos t0 - cos t) / (cos t0 - cos t1) be the height in a cell between the polar angles t0 and t1 = t0 + h,
+// proportional to solid angle, and g = (t - t0) / h the height by angle, which the interpolant is linear in. With
+// A … D the magnitudes at the corners the density of the cell is
+//
+//   p(x, s) = P m(x, s) / (omega (A + B + C + D) / 4),  m(x, s) bilinear with corners A … D,
+//
+// P the table's probability, proportional to omega (A + B + C + D) / 4 = integral of m. Marginal in s and
+// conditional in x are linear: inverted in closed form. The interpolant is m(x, g); m(x, g) / m(x, s) lies between
+// (1 - g) / (1 - s) and g / s, and these are between sin(tm) / sin(t1) and sin(tm) / sin(t0) to O(h^2), tm in the
+// middle (in the northern half; mirrored in the southern): 1 -+ (h / 2) cot(tm). Beside the pole, t0 = h / 2, they
+// are 2/3 and 2. In the half cells at the poles the two corners of each side are equal: m does not depend on s.
+BilinearLatLongDensity::BilinearLatLongDensity(const Image& image, const std::string& name)
+    : width_(image.width), height_(image.height) {
+  magnitudes_.reserve(image.pixels.size());
+  for (const Rgb& texel : image.pixels) magnitudes_.push_back(static_cast<float>(magnitude_of(texel, name)));
+  row_borders_.push_back(0.0);
+  for (int row = 0; row < height_; ++row) {
+    const double sine = std::sin(0.5 * kPi * (row + 0.5) / height_);
+    row_borders_.push_back(sine * sine);
+  }
+  row_borders_.push_back(1.0);
+  table_ = TexelTable(height_ + 1, width_, [&](int row, std::span<double> weights) {
+    const double omega = cell_solid_angle(row);
+    for (int x = 0; x < width_; ++x) weights[static_cast<std::size_t>(x)] = corners(row, x).mean() * omega;
+  });
+}
+
+double BilinearLatLongDensity::Corners::mean() const {
+  return 0.25 * ((upper_left + upper_right) + (lower_left + lower_right));
+}
+
+double BilinearLatLongDensity::Corners::at(double x, double y) const {
+  return (1.0 - y) * ((1.0 - x) * upper_left + x * upper_right) +
+         y * ((1.0 - x) * lower_left + x * lower_right);
+}
+
+BilinearLatLongDensity::Corners BilinearLatLongDensity::corners(int row, int column) const {
+  const int left = column > 0 ? column - 1 : width_ - 1;
+  const auto magnitude = [&](int x, int y) {
+    return static_cast<double>(magnitudes_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                                           static_cast<std::size_t>(x)]);
+  };
+  const int upper = std::max(row - 1, 0);
+  const int lower = std::min(row, height_ - 1);
+  return {magnitude(left, upper), magnitude(column, upper), magnitude(left, lower), magnitude(column, lower)};
+}
+
+double BilinearLatLongDensity::cell_solid_angle(int row) const {
+  const auto i = static_cast<std::size_t>(row);
+  return 4.0 * kPi / width_ * (row_borders_[i + 1] - row_borders_[i]);
+}
+
+// s of g, by sin^2 a - sin^2 b = sin(a + b) sin(a - b) with half polar angles: no cancellation, so that s is 0 or 1
+// only where g is.
+double BilinearLatLongDensity::height_in_cell(int row, double fraction) const {
+  if (row == 0 || row == height_) return 0.5;
+  const double half_step = 0.5 * kPi / height_;
+  const double first = half_step * (row - 0.5);
+  const double across = half_step * fraction;
+  const auto i = static_cast<std::size_t>(row);
+  return std::sin(2.0 * first + across) * std::sin(across) / (row_borders_[i + 1] - row_borders_[i]);
+}
+
+Vec3d BilinearLatLongDensity::sample(double x, double y) const {
+  const TexelTable::Pick pick = table_.pick(x, y);
+  const Corners c = corners(pick.row, pick.column);
+  const double height =
+      with_linear_density(pick.y, c.upper_left + c.upper_right, c.lower_left + c.lower_right);
+  const double left = (1.0 - height) * c.upper_left + height * c.lower_left;
+  const double right = (1.0 - height) * c.upper_right + height * c.lower_right;
+  return inside_cell(pick.row, pick.column, with_linear_density(pick.x, left, right), height);
+}
+
+Vec3d BilinearLatLongDensity::centre(double x, double y) const {
+  const TexelTable::Pick pick = table_.pick(x, y);
+  return inside_cell(pick.row, pick.column, 0.5, 0.5);
+}
+
+Vec3d BilinearLatLongDensity::inside_cell(int row, int column, double x, double y) const {
+  const auto i = static_cast<std::size_t>(row);
+  const double versine = row_borders_[i] + (row_borders_[i + 1] - row_borders_[i]) * y;
+  return direction_from((column - 0.5 + x) / width_, versine);
+}
+
+double BilinearLatLongDensity::pdf(const Vec3& direction) const {
+  const Vec2 uv = lat_long_from_direction(direction);
+  const Neighbours u = wrapped_neighbours(uv.x, width_);
+  const Neighbours v = clamped_neighbours(uv.y, height_);
+  const int column = u.cell % width_;
+  const Corners c = corners(v.cell, column);
+  const double mean = c.mean();
+  if (!(mean > 0.0)) return 0.0;
+  const double height = height_in_cell(v.cell, static_cast<double>(v.fraction));
+  return table_.probability(v.cell, column) * c.at(static_cast<double>(u.fraction), height) /
+         (mean * cell_solid_angle(v.cell));
+}
+
 CubeDensity::CubeDensity(const CubeMapSky& sky) : side_(sky.faces[0].width) {
   const std::vector<double> solid_angles = cube_texel_solid_angles(side_);
   table_ = TexelTable(6 * side_, side_, [&](int row, std::span<double> weights) {
@@ -287,8 +431,8 @@ double CubeDensity::pdf(const Vec3& direction) const {
          (texel_area * nearness * nearness * nearness);
 }
 
-SkyPart make_sky_density(const Sky& sky, const std::string& name) {
-  return std::visit([&](const auto& kind) { return make_part(kind, name); }, sky);
+SkyPart make_sky_density(const Sky& sky, Lookup lookup, const std::string& name) {
+  return std::visit([&](const auto& kind) { return make_part(kind, lookup, name); }, sky);
 }
 
 }  // namespace plumbline::light

@@ -54,6 +54,41 @@ class LatLongDensity {
   TexelTable table_;
 };
 
+/// Nearly in proportion to the bilinear interpolant of a lat-long image's magnitudes, which bounds the magnitude of
+/// the interpolated radiance. Cells run from texel centre to texel centre; inside a cell the density per solid
+/// angle is bilinear in azimuth and cos(theta), the interpolant in azimuth and theta: their ratio is within 1/2
+/// and 3/2 beside a pole and within 1 +- (pi / 2 height) cot(theta) elsewhere (derivation in the .cpp).
+class BilinearLatLongDensity {
+ public:
+  /// @throws InputError, beginning with `name`, when a texel is not finite
+  BilinearLatLongDensity(const image::Image& image, const std::string& name);
+
+  [[nodiscard]] Vec3d sample(double x, double y) const;
+  [[nodiscard]] Vec3d centre(double x, double y) const;
+  [[nodiscard]] double pdf(const Vec3& direction) const;
+  [[nodiscard]] double power() const { return table_.total(); }
+
+ private:
+  struct Corners {
+    double upper_left = 0.0;
+    double upper_right = 0.0;
+    double lower_left = 0.0;
+    double lower_right = 0.0;
+    [[nodiscard]] double mean() const;
+    [[nodiscard]] double at(double x, double y) const;
+  };
+  [[nodiscard]] Corners corners(int row, int column) const;
+  [[nodiscard]] double cell_solid_angle(int row) const;
+  [[nodiscard]] double height_in_cell(int row, double fraction) const;
+  [[nodiscard]] Vec3d inside_cell(int row, int column, double x, double y) const;
+
+  int width_ = 0;
+  int height_ = 0;
+  std::vector<float> magnitudes_;
+  std::vector<double> row_borders_;  // height + 2 values of (1 - cos theta) / 2
+  TexelTable table_;  // of height + 1 rows of width cells; cell (0, 0) has texel (0, 0) at its lower right
+};
+
 /// Texels of a cube map in proportion to magnitude times solid angle, uniform on the face inside a texel.
 class CubeDensity {
  public:
@@ -71,7 +106,8 @@ class CubeDensity {
   TexelTable table_;  // the six faces under each other
 };
 
-using SkyDensity = std::variant<NoDensity, UniformDensity, LatLongDensity, CubeDensity>;
+using SkyDensity =
+    std::variant<NoDensity, UniformDensity, LatLongDensity, BilinearLatLongDensity, CubeDensity>;
 
 struct SkyPart {
   SkyDensity density;
@@ -79,6 +115,6 @@ struct SkyPart {
 };
 /// @throws InputError when an image is empty, the faces of a cube are not equal squares, or a radiance is not
 /// finite; the message begins with `name`.
-[[nodiscard]] SkyPart make_sky_density(const Sky& sky, const std::string& name);
+[[nodiscard]] SkyPart make_sky_density(const Sky& sky, Lookup lookup, const std::string& name);
 
 }  // namespace plumbline::light

@@ -68,8 +68,15 @@ void add_light_modifiers(CLI::App& verb, LightOptions& options) {
   verb.add_option("--env-layout", options.layout,
                   "how an image maps to directions (default: by its aspect ratio)")
       ->check(CLI::IsMember({"auto", "lat-long", "angular-map", "cube"}));
+  add_lookup_option(verb, options);
   add_angles(verb, "--rotate-env", options.rotation_deg,
              "turn the environment about world X, then Y, then Z, degrees: X,Y,Z");
+}
+
+void add_lookup_option(CLI::App& verb, LightOptions& options) {
+  verb.add_option("--env-lookup", options.lookup,
+                  "how an image is read between texel centres: by nearest texel (default) or bilinear")
+      ->check(CLI::IsMember({"nearest", "bilinear"}));
 }
 
 namespace {
@@ -91,6 +98,7 @@ light::Environment load(const LightOptions& options) {
   } else {
     result = light::load_environment(options.source, layout_of(options.layout));
   }
+  if (options.lookup == "bilinear") result.lookup = light::Lookup::bilinear;
   if (result.negative_texels > 0)
     warn(fmt::format("{}: {} negative texels set to 0", options.source, result.negative_texels));
   if (options.rotation_deg.empty()) return result;
@@ -102,6 +110,7 @@ std::string command_text(const LightOptions& options) {
   std::string text;
   if (!options.source.empty()) text += " --env " + quoted(options.source);
   if (options.layout != "auto") text += " --env-layout " + options.layout;
+  if (options.lookup != "nearest") text += " --env-lookup " + options.lookup;
   const std::vector<float>& angles = options.rotation_deg;
   if (!angles.empty()) text += fmt::format(" --rotate-env {},{},{}", angles[0], angles[1], angles[2]);
   return text;

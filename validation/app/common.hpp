@@ -40,15 +40,18 @@ void add_camera_option(CLI::App& verb, std::string& camera);
 /// The camera of that name, or the scene's first. @throws InputError naming --camera
 [[nodiscard]] const scene::Camera& camera_of(const scene::Scene& scene, const std::string& name);
 
-/// --env, --env-layout, --rotate-env.
+/// --env, --env-layout, --env-lookup, --rotate-env.
 struct LightOptions {
   std::string source;
   std::string layout = "auto";
+  std::string lookup = "nearest";
   std::vector<float> rotation_deg;
 };
 void add_light_options(CLI::App& verb, LightOptions& options, bool is_required);
-/// --env-layout and --rotate-env alone.
+/// --env-layout, --env-lookup and --rotate-env alone.
 void add_light_modifiers(CLI::App& verb, LightOptions& options);
+/// Only --env-lookup.
+void add_lookup_option(CLI::App& verb, LightOptions& options);
 /// An image, a builtin:NAME, or a .json of SH coefficients (then the band-limited light itself); black when
 /// nothing was asked for. Warns (on stderr) of negative texels that were set to 0.
 [[nodiscard]] light::Environment load(const LightOptions& options);

@@ -62,6 +62,7 @@ void write_view(const Options& options, const transfer::Baked& baked, const ligh
                       {"plumbline.baked", options.input},
                       {"plumbline.sceneHash", scene::fingerprint(baked.scene)},
                       {"plumbline.environment", environment.name},
+                      {"plumbline.environmentLookup", options.light.lookup},
                       {"plumbline.bands", std::to_string(baked.transfer.bands)},
                       {"plumbline.transfer", std::string(to_string(baked.transfer.kind))},
                       {"plumbline.command", reproducing_command(options)}};
@@ -85,6 +86,7 @@ int run(const Options& options) {
   if (!options.vertices.empty()) write_output(options.vertices, csv_of(baked.scene, radiance));
   write_json(options.json, {{"input", options.input},
                             {"environment", environment.name},
+                            {"environment_lookup", options.light.lookup},
                             {"bands", baked.transfer.bands},
                             {"transfer", std::string(to_string(baked.transfer.kind))},
                             {"backend", options.backend},

@@ -29,7 +29,7 @@ struct Options {
   std::string bounces = "all";
   std::string size = "256x256";
   std::uint64_t seed = 0;
-  std::string shard = "0/1";
+  std::string shard;  // empty: the whole image
   int threads = 0;
   std::string layers;
   std::string json;
@@ -91,7 +91,7 @@ integrate::RenderSettings settings_of(const Options& options) {
   settings.max_bounces = parse_bounces(options.bounces);
   settings.seed = options.seed;
   settings.threads = options.threads;
-  settings.shard = parse_shard(options.shard);
+  if (!options.shard.empty()) settings.shard = parse_shard(options.shard);
   if (settings.shard.count > 1 && is_progressive) {
     throw InputError(
         "--shard: a part cannot know the whole image's error or share its time: give --spp instead of "
@@ -143,12 +143,13 @@ void set_attributes(image::LayeredImage& image, const Options& options, const in
                       {"plumbline.scene", options.scene.source},
                       {"plumbline.sceneHash", scene::fingerprint(world.scene)},
                       {"plumbline.environment", world.environment.name},
+                      {"plumbline.environmentLookup", options.light.lookup},
                       {"plumbline.camera", camera},
                       {"plumbline.seed", std::to_string(settings.seed)},
                       {"plumbline.samplesPerPixel", std::to_string(result.samples_per_pixel)},
                       {"plumbline.bounces", bounces_text(settings.max_bounces)},
                       {"plumbline.command", reproducing_command(options, result)}};
-  if (settings.shard.count > 1) {
+  if (!options.shard.empty()) {
     image.attributes[integrate::kShardAttribute] =
         fmt::format("{}/{}", settings.shard.index, settings.shard.count);
   }
@@ -168,6 +169,7 @@ void report(const Options& options, const integrate::RenderSettings& settings,
                             {"scene", options.scene.source},
                             {"scene_hash", attributes.at("plumbline.sceneHash")},
                             {"environment", attributes.at("plumbline.environment")},
+                            {"environment_lookup", options.light.lookup},
                             {"width", settings.width},
                             {"height", settings.height},
                             {"samples_per_pixel", result.samples_per_pixel},

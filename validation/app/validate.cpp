@@ -23,6 +23,7 @@ struct Options {
   std::vector<std::string> scenes;
   SceneOptions scene;  // what all scenes share
   std::vector<std::string> environments;
+  LightOptions light;  // what all environments share
   std::vector<int> bands = {3, 5};
   std::vector<std::string> families;
   std::string output;
@@ -67,6 +68,7 @@ std::string reproducing_command(const Options& o) {
   if (o.scene.crease_deg > 0.0F) command += fmt::format(" --crease {}", o.scene.crease_deg);
   if (o.scene.has_ground) command += " --ground";
   for (const std::string& environment : o.environments) command += " --env " + quoted(environment);
+  if (o.light.lookup != "nearest") command += " --env-lookup " + o.light.lookup;
   command += " --bands";
   for (const int bands : o.bands) command += fmt::format(" {}", bands);
   if (!o.families.empty()) command += fmt::format(" --checks {}", fmt::join(o.families, ","));
@@ -92,7 +94,7 @@ checks::Suite make_suite(const Options& options) {
     (void)scene::find_camera(suite.scenes.back().scene, one.camera);
   }
   for (const std::string& source : options.environments) {
-    LightOptions one;
+    LightOptions one = options.light;
     one.source = source;
     suite.environments.push_back(load(one));
   }
@@ -123,6 +125,7 @@ report::Report start_report(const Options& options) {
   report.settings = {{"seed", std::to_string(b.seed)},
                      {"significance of each statistical test, its many values together",
                       fmt::format("{:g}", b.significance)},
+                     {"lookup of environment images", options.light.lookup},
                      {"image", options.size},
                      {"paths a pixel", std::to_string(b.image_samples)},
                      {"directions a vertex (bake)", std::to_string(b.bake_samples)},
@@ -193,6 +196,7 @@ void register_validate(CLI::App& app, Action& chosen) {
   add_camera_option(*verb, options->scene.camera);
   verb->add_option("--env", options->environments,
                    "environments to judge under (default: builtin:two-lobes)");
+  add_lookup_option(*verb, options->light);
   verb->add_option("--bands", options->bands, "band counts to judge (default: 3 5)")->delimiter(',');
   std::vector<std::string> names;
   for (const checks::Family& family : checks::families()) names.push_back(family.name);
