@@ -28,7 +28,8 @@ TEST_F(RenderCommand, WritesTheChannelsOfTheConventions) {
   EXPECT_EQ(image.width, 40);
   EXPECT_EQ(image.height, 24);
   std::set<std::string> expected = {"R", "G", "B", "samples", "depth"};
-  for (const char* layer : {"stderr", "emission", "bounce0", "bounce1", "albedo"}) {
+  for (const char* layer :
+       {"stderr", "emission", "bounce0", "bounce1", "direct", "indirect", "a", "b", "albedo"}) {
     for (const char component : {'R', 'G', 'B'}) expected.insert(fmt::format("{}.{}", layer, component));
   }
   for (const char* layer : {"normal", "position"}) {
