@@ -148,13 +148,16 @@ RgbD emitter_by_direction(const World& world, const Meeting& meeting, const Vec3
   return RgbD(meeting.emission) * (kPi * power_heuristic(pdf, light_pdf));
 }
 
-/// Probability to go on. The first bounce always does: it carries most of the indirect light, and ending it early costs more variance than its
-/// two rays cost time (measured on the Cornell box: variance x time 4.0 against 5.1 for the throughput itself). Later the root of what is
-/// left, and a little less than 1 for ever in a white room.
+/// Probability to go on. The first bounce always does: it carries most of the indirect light, and ending it
+/// early costs more variance than its two rays cost time (measured on the Cornell box: variance x time 4.0
+/// against 5.1 for the throughput itself). Later the root of what is left; and in white rooms a little less
+/// than 1 from a patient number of bounces on, so that a path without a way out ends. Not much less: a light
+/// that is reached late is weighed with the inverse of all probabilities before.
 float survival(const Rgb& throughput, int bounce) {
-  constexpr int kPatience = 8;
+  constexpr int kPatience = 64;
+  constexpr float kForEver = 0.998F;
   if (bounce == 0) return is_black(throughput) ? 0.0F : 1.0F;
-  const float limit = bounce < kPatience ? 1.0F : 0.98F;
+  const float limit = bounce < kPatience ? 1.0F : kForEver;
   return std::min(std::sqrt(max_component(throughput)), limit);
 }
 

@@ -210,13 +210,13 @@ void register_validate(CLI::App& app, Action& chosen) {
   verb->add_option("--json", options->json, "write the numbers here too, or - for standard output");
   verb->add_option("--size", options->size, "image size WxH (default 384x288)");
   verb->add_option("--spp", options->budget.image_samples,
-                   "paths a pixel of the reference images (default 128)")
+                   "paths a pixel of the reference images (default 64)")
       ->check(CLI::Range(2, 1 << 20));
   verb->add_option("--samples", options->budget.bake_samples,
                    "directions a vertex of the bake (default 1024)")
       ->check(CLI::Range(32, 1 << 24));
   verb->add_option("--gather-samples", options->budget.gather_samples,
-                   "paths a vertex of the vertex truth (default 256)")
+                   "paths a vertex of the vertex truth (default 128)")
       ->check(CLI::Range(32, 1 << 24));
   verb->add_option("--seed", options->budget.seed, "same seed, same numbers");
   verb->add_option("--threads", options->budget.threads, "0 = all; never changes the numbers")

@@ -18,9 +18,9 @@ struct Budget {
   double significance = 1e-4;  // family-wise: chance that a run without any defect reports one
   int width = 384;
   int height = 288;
-  int image_samples = 128;   // paths a pixel of each reference image
+  int image_samples = 64;    // paths a pixel of each reference image
   int bake_samples = 1024;   // directions a vertex, in two independent halves
-  int gather_samples = 256;  // paths a vertex of the path-traced vertex values, in two independent halves
+  int gather_samples = 128;  // paths a vertex of the path-traced vertex values, in two independent halves
   int projection_samples = 1 << 19;
 };
 
