@@ -5,58 +5,17 @@
 #include <optional>
 
 #include "reference/integrate/hemisphere.hpp"
+#include "reference/integrate/meeting.hpp"
 
 namespace plumbline::integrate {
 namespace {
 
 constexpr double kInvPi = 1.0 / kPi;
 
-double power_heuristic(double own, double other) {
-  const double a = own * own;
-  const double b = other * other;
-  return a / (a + b);
-}
-
-/// A surface that reflects or emits, met by a ray; none for a miss. A single-sided surface met from behind is
-/// met, but dark.
-struct Meeting {
-  trace::SurfacePoint point;
-  Rgb albedo{0.0F};
-  Rgb emission{0.0F};
-  std::uint32_t triangle = 0;
-  float distance = 0.0F;
-};
-
-std::optional<Meeting> meet(const World& world, const trace::Ray& ray) {
-  const std::optional<trace::Hit> hit = world.caster.closest_hit(ray);
-  if (!hit) return std::nullopt;
-  const trace::SurfaceHit surface = trace::surface_hit(world.scene, *hit, ray.direction);
-  Meeting meeting{surface.point, Rgb(0.0F), Rgb(0.0F), hit->triangle, hit->distance};
-  const scene::Material& material = world.scene.materials[world.scene.triangle_materials[hit->triangle]];
-  if (surface.is_front || material.is_double_sided) {
-    meeting.albedo = scene::albedo_at(world.scene, hit->triangle, hit->barycentrics);
-    meeting.emission = material.emission;
-  }
-  return meeting;
-}
-
 /// n.w, or 0 where the surface itself is in the way.
 float received_cosine(const trace::SurfacePoint& point, const Vec3& direction) {
   if (!(glm::dot(point.geometric_normal, direction) > 0.0F)) return 0.0F;
   return std::max(0.0F, glm::dot(point.shading_normal, direction));
-}
-
-bool is_visible(const World& world, const trace::SurfacePoint& point, const Vec3& direction, float distance) {
-  return !world.caster.is_occluded({trace::ray_origin(point, direction), direction, distance});
-}
-
-/// Both ends are lifted off their surfaces, so that neither blocks.
-bool is_mutually_visible(const World& world, const trace::SurfacePoint& a, const trace::SurfacePoint& b) {
-  const Vec3 between = b.position - a.position;
-  const Vec3 origin = trace::ray_origin(a, between);
-  const Vec3 segment = trace::ray_origin(b, -between) - origin;
-  const float length = glm::length(segment);
-  return !world.caster.is_occluded({origin, segment / length, length});
 }
 
 /// Splitting counts in the weights: n samples of density p_l beside one of density p_b (Veach's multi-sample power heuristic).
@@ -143,9 +102,7 @@ RgbD sky_by_direction(const World& world, const Vec3& direction, std::uint32_t s
 
 RgbD emitter_by_direction(const World& world, const Meeting& meeting, const Vec3& direction, double pdf) {
   if (is_black(meeting.emission)) return RgbD(0.0);
-  const float cos_emitter = -glm::dot(meeting.point.geometric_normal, direction);
-  const double light_pdf = world.emitters.pdf(meeting.triangle, meeting.distance, cos_emitter);
-  return RgbD(meeting.emission) * (kPi * power_heuristic(pdf, light_pdf));
+  return RgbD(meeting.emission) * (kPi * power_heuristic(pdf, emitter_pdf(world, meeting, direction)));
 }
 
 /// Probability to go on. The first bounce always does: it carries most of the indirect light, and ending it

@@ -4,21 +4,17 @@
 
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "reference/base/error.hpp"
 #include "reference/base/parallel.hpp"
+#include "reference/integrate/meeting.hpp"
 
 namespace plumbline::integrate {
 namespace {
 
 constexpr double kUniformPdf = 0.25 / kPi;  // of directions drawn uniformly over the sphere
-
-double power_heuristic(double own, double other) {
-  const double a = own * own;
-  const double b = other * other;
-  return a / (a + b);
-}
 
 /// Archimedes: the height on the axis is uniform.
 Vec3 uniform_direction(const Vec2& u) {
@@ -68,20 +64,14 @@ struct Arrival {
 Arrival sky_by_light(const World& world, const trace::SurfacePoint& point, const Vec2& u) {
   const std::optional<light::DirectionSample> sample = world.environment_sampler.sample(u);
   if (!sample || is_black(sample->radiance)) return {};
-  if (world.caster.is_occluded({trace::ray_origin(point, sample->direction), sample->direction})) return {};
+  if (!is_visible(world, point, sample->direction, std::numeric_limits<float>::infinity())) return {};
   const double weight = power_heuristic(sample->pdf, kUniformPdf);
   return {sample->direction, RgbD(sample->radiance) * (weight / sample->pdf)};
 }
 
-/// A point on an emitter; both ends of the shadow ray are lifted off their surfaces.
 Arrival emitter_by_light(const World& world, const trace::SurfacePoint& point, float pick, const Vec2& u) {
   const std::optional<EmitterSample> sample = world.emitters.sample(point.position, pick, u);
-  if (!sample) return {};
-  const Vec3 between = sample->on_emitter.position - point.position;
-  const Vec3 origin = trace::ray_origin(point, between);
-  const Vec3 segment = trace::ray_origin(sample->on_emitter, -between) - origin;
-  const float length = glm::length(segment);
-  if (world.caster.is_occluded({origin, segment / length, length})) return {};
+  if (!sample || !is_mutually_visible(world, point, sample->on_emitter)) return {};
   const double weight = power_heuristic(sample->pdf, kUniformPdf);
   return {sample->direction, RgbD(sample->radiance) * (weight / sample->pdf)};
 }
@@ -108,20 +98,13 @@ RgbD reflected(const World& world, const trace::SurfacePoint& point, const Rgb& 
 // uniformly over the sphere, combined by the power heuristic; what is reflected has the second alone.
 RgbD light_by_direction(const World& world, const trace::SurfacePoint& point, const Vec3& direction,
                         int max_bounces, Sampler& sampler) {
-  const std::optional<trace::Hit> hit =
-      world.caster.closest_hit({trace::ray_origin(point, direction), direction});
-  if (!hit) return sky_by_direction(world, direction);
-  const trace::SurfaceHit surface = trace::surface_hit(world.scene, *hit, direction);
-  const scene::Material& material = world.scene.materials[world.scene.triangle_materials[hit->triangle]];
-  if (!surface.is_front && !material.is_double_sided) return RgbD(0.0);
-  RgbD radiance(0.0);
-  if (!is_black(material.emission)) {
-    const float cos_emitter = -glm::dot(surface.point.geometric_normal, direction);
-    const double light_pdf = world.emitters.pdf(hit->triangle, hit->distance, cos_emitter);
-    radiance += RgbD(material.emission) * power_heuristic(kUniformPdf, light_pdf);
+  const std::optional<Meeting> meeting = meet(world, {trace::ray_origin(point, direction), direction});
+  if (!meeting) return sky_by_direction(world, direction);
+  RgbD radiance = reflected(world, meeting->point, meeting->albedo, max_bounces, sampler);
+  if (!is_black(meeting->emission)) {
+    radiance +=
+        RgbD(meeting->emission) * power_heuristic(kUniformPdf, emitter_pdf(world, *meeting, direction));
   }
-  const Rgb albedo = scene::albedo_at(world.scene, hit->triangle, hit->barycentrics);
-  radiance += reflected(world, surface.point, albedo, max_bounces, sampler);
   return radiance / kUniformPdf;
 }
 

@@ -1,0 +1,35 @@
+#include "reference/integrate/meeting.hpp"
+
+namespace plumbline::integrate {
+
+std::optional<Meeting> meet(const World& world, const trace::Ray& ray) {
+  const std::optional<trace::Hit> hit = world.caster.closest_hit(ray);
+  if (!hit) return std::nullopt;
+  const trace::SurfaceHit surface = trace::surface_hit(world.scene, *hit, ray.direction);
+  Meeting meeting{surface.point, Rgb(0.0F), Rgb(0.0F), hit->triangle, hit->distance};
+  const scene::Material& material = world.scene.materials[world.scene.triangle_materials[hit->triangle]];
+  if (surface.is_front || material.is_double_sided) {
+    meeting.albedo = scene::albedo_at(world.scene, hit->triangle, hit->barycentrics);
+    meeting.emission = material.emission;
+  }
+  return meeting;
+}
+
+bool is_visible(const World& world, const trace::SurfacePoint& point, const Vec3& direction, float distance) {
+  return !world.caster.is_occluded({trace::ray_origin(point, direction), direction, distance});
+}
+
+bool is_mutually_visible(const World& world, const trace::SurfacePoint& a, const trace::SurfacePoint& b) {
+  const Vec3 between = b.position - a.position;
+  const Vec3 origin = trace::ray_origin(a, between);
+  const Vec3 segment = trace::ray_origin(b, -between) - origin;
+  const float length = glm::length(segment);
+  return !world.caster.is_occluded({origin, segment / length, length});
+}
+
+double emitter_pdf(const World& world, const Meeting& meeting, const Vec3& direction) {
+  const float cos_emitter = -glm::dot(meeting.point.geometric_normal, direction);
+  return world.emitters.pdf(meeting.triangle, meeting.distance, cos_emitter);
+}
+
+}  // namespace plumbline::integrate
