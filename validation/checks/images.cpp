@@ -19,7 +19,7 @@
 #include "reference/integrate/gather.hpp"
 #include "reference/integrate/render.hpp"
 #include "reference/scene/load.hpp"
-#include "validation/checks/paired_error.hpp"
+#include "validation/checks/error_parts.hpp"
 #include "validation/checks/suite.hpp"
 #include "validation/checks/verdicts.hpp"
 
@@ -31,13 +31,6 @@ using image::Image;
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
-
-/// A path-traced image and its squared standard error.
-struct Traced {
-  Image mean;
-  Image variance;
-  double seconds = 0.0;
-};
 
 Traced trace_image(const NamedScene& scene, const light::Environment& environment, const Budget& budget,
                    std::uint64_t seed) {
@@ -119,16 +112,6 @@ SceneBakes bake_scene(const NamedScene& scene, int bands, const Budget& budget) 
   return bakes;
 }
 
-std::vector<Rgb> mean_of(const std::vector<Rgb>& a, const std::vector<Rgb>& b) {
-  std::vector<Rgb> mean(a.size());
-  for (std::size_t i = 0; i < a.size(); ++i) mean[i] = 0.5F * (a[i] + b[i]);
-  return mean;
-}
-
-Image mean_of(const Image& a, const Image& b) {
-  return {a.width, a.height, mean_of(a.pixels, b.pixels)};
-}
-
 /// Draws vertex values through the scene's camera.
 class Viewer {
  public:
@@ -167,99 +150,10 @@ class Viewer {
   relight::ViewSettings settings_;
 };
 
-/// All images of one scene, light and band count.
-struct Pictures {
-  Traced full;          // A
-  Traced band_limited;  // B
-  Image vertex_a, vertex_b;
-  Image prt_a, prt_b;
-  Image unshadowed;
-};
-
-double channel(const Image& image, std::size_t pixel, int c) {
-  return static_cast<double>(image.pixels[pixel][c]);
-}
-
-/// The parts of the error, as mean squares over covered pixels.
-struct Parts {
-  double mean_radiance = 0.0;            // of A
-  metrics::Estimate full;                // P to A
-  metrics::Estimate truncation;          // B to A
-  metrics::Estimate band_limited;        // P to B, bake noise included
-  metrics::Estimate without_bake_noise;  // the same without
-  metrics::Estimate interpolation;       // C to B
-  metrics::Estimate bake_noise;
-  metrics::Estimate method;           // (P to B) - (C to B): must be 0
-  metrics::Estimate mean_difference;  // mean of P - C over the mean radiance: must be 0
-};
-
-Parts measure(const Pictures& p, const Mask& mask) {
-  const int w = p.full.mean.width;
-  const int h = p.full.mean.height;
-  const Image prt = mean_of(p.prt_a, p.prt_b);
-  const auto mean = [&](auto&& value) { return tile_mean(mask, w, h, value); };
-  const auto a = [&](std::size_t i, int c) { return channel(p.full.mean, i, c); };
-  const auto b = [&](std::size_t i, int c) { return channel(p.band_limited.mean, i, c); };
-  const auto var_a = [&](std::size_t i, int c) { return channel(p.full.variance, i, c); };
-  const auto var_b = [&](std::size_t i, int c) { return channel(p.band_limited.variance, i, c); };
-  const auto cross = [&](const Image& x, const Image& y, std::size_t i, int c) {
-    return (channel(x, i, c) - b(i, c)) * (channel(y, i, c) - b(i, c));
-  };
-  Parts parts;
-  parts.mean_radiance = mean(a).mean;
-  parts.full =
-      mean([&](std::size_t i, int c) { return std::pow(channel(prt, i, c) - a(i, c), 2) - var_a(i, c); });
-  parts.truncation =
-      mean([&](std::size_t i, int c) { return std::pow(b(i, c) - a(i, c), 2) - var_a(i, c) - var_b(i, c); });
-  parts.band_limited =
-      mean([&](std::size_t i, int c) { return std::pow(channel(prt, i, c) - b(i, c), 2) - var_b(i, c); });
-  parts.without_bake_noise =
-      mean([&](std::size_t i, int c) { return cross(p.prt_a, p.prt_b, i, c) - var_b(i, c); });
-  parts.interpolation =
-      mean([&](std::size_t i, int c) { return cross(p.vertex_a, p.vertex_b, i, c) - var_b(i, c); });
-  parts.bake_noise = mean([&](std::size_t i, int c) {
-    return 0.25 * std::pow(channel(p.prt_a, i, c) - channel(p.prt_b, i, c), 2);
-  });
-  parts.method = mean([&](std::size_t i, int c) {
-    return cross(p.prt_a, p.prt_b, i, c) - cross(p.vertex_a, p.vertex_b, i, c);
-  });
-  const Image vertex = mean_of(p.vertex_a, p.vertex_b);
-  parts.mean_difference = mean([&](std::size_t i, int c) {
-    return (channel(prt, i, c) - channel(vertex, i, c)) / parts.mean_radiance;
-  });
-  return parts;
-}
-
 std::string percent(const metrics::Estimate& mean_square, double scale) {
   const RootMeanSquare r = root(mean_square);
   return fmt::format("{:.3g} % [{:.3g}, {:.3g}]", 100.0 * r.value / scale, 100.0 * r.low / scale,
                      100.0 * r.high / scale);
-}
-
-void judge(const std::string& name, const Parts& parts, const Budget& budget, report::Report& report) {
-  const double m = parts.mean_radiance;
-  report.findings.push_back(judge_deviation(
-      {"images", name + " / mean of PRT",
-       "The same integral by two methods that share no sampling and no SH code",
-       "Mean of PRT less path-traced vertices over the mean radiance, same light, same interpolation."},
-      parts.mean_difference, 1e-5, 0.01, budget.significance));
-  report.findings.push_back(judge_deviation(
-      {"images", name + " / error beyond interpolation",
-       "Under the band-limited light PRT may differ by noise and interpolation only",
-       "Mean squared error of PRT less that of interpolated path-traced vertices, bake noise taken off, over "
-       "the squared mean radiance."},
-      {parts.method.mean / (m * m), parts.method.standard_error / (m * m)}, 1e-8, 1e-3, budget.significance));
-  // Minkowski: | |P - A| - |B - A| | <= |P - B|, each at the end of its interval that is kindest to nobody.
-  const double gap = std::abs(root(parts.full).value - root(parts.truncation).value) / m;
-  const double chance = (root(parts.full).high - root(parts.full).low + root(parts.truncation).high -
-                         root(parts.truncation).low) /
-                        (2.0 * m);
-  report.findings.push_back(
-      judge_error({"images", name + " / full light is truncation",
-                   "Triangle inequality: |PRT - truth| = truncation within |PRT - band-limited truth|",
-                   "Difference of PRT's error under the full light and the truncation that path tracing "
-                   "measures, over the mean radiance."},
-                  gap, root(parts.band_limited).high / m + chance));
 }
 
 Image over(const Image& image, const Image& background) {
@@ -270,7 +164,7 @@ Image over(const Image& image, const Image& background) {
 
 void add_gallery(const std::string& name, int bands, const Pictures& p, const Image& background,
                  double mean_radiance, report::Report& report) {
-  const Image prt = mean_of(p.prt_a, p.prt_b);
+  const Image prt = mean_image(p.prt_a, p.prt_b);
   report::Gallery gallery;
   gallery.title = name;
   // The mean radiance of the scene a little above middle gray, in the slider's quarter stops.
@@ -362,7 +256,8 @@ void check_pair(const NamedScene& scene, const light::Environment& environment, 
     const Parts parts = measure(pictures, mask);
     const double m = parts.mean_radiance;
     const std::string name = fmt::format("{}, {} bands", pair, bands);
-    judge(name, parts, budget, report);
+    for (Finding& finding : judge_parts(name, parts, budget.significance))
+      report.findings.push_back(std::move(finding));
     table.rows.push_back({scene.name, short_name(environment.name), std::to_string(bands),
                           percent(parts.band_limited, m), percent(parts.interpolation, m),
                           percent(parts.bake_noise, m), percent(parts.full, m), percent(parts.truncation, m),

@@ -38,6 +38,12 @@ Finding judge_deviation(const Label& label, const metrics::Estimate& deviation, 
   constexpr double kPower = 0.9;
   Finding finding = start(label);
   finding.measured = deviation.mean;
+  if (!std::isfinite(deviation.mean) || !(deviation.standard_error >= 0.0)) {
+    finding.uncertainty = deviation.standard_error;
+    finding.verdict = Verdict::fail;
+    finding.detail += " Not a number.";
+    return finding;
+  }
   finding.uncertainty = metrics::two_sided_z(0.05) * deviation.standard_error;
   finding.bound = allowance + metrics::two_sided_z(significance) * deviation.standard_error;
   const double visible =
