@@ -254,7 +254,7 @@ int next_round(const RenderSettings& settings, std::int64_t done, double relativ
   if (settings.max_seconds) {
     const double rate = static_cast<double>(done) / std::max(seconds, 1e-6);
     const double affordable = std::floor((*settings.max_seconds - seconds) * rate);
-    if (affordable < 1.0) return 0;
+    if (affordable < 2.0) return 0;  // a round of one sample would have no standard error
     wanted = std::min(wanted, affordable);
   }
   return static_cast<int>(wanted);

@@ -235,6 +235,19 @@ TEST(Render, TargetErrorIsReachedAndSaid) {
   EXPECT_LE(std::abs(std::sqrt(variance / n) / (mean / n) - result.relative_error), 1e-5);
 }
 
+// Whatever time there is, and so whatever the last round's size, the error that is reported is known.
+TEST(Render, EveryTimeLimitGivesAKnownError) {
+  RenderSettings settings = small(6);
+  for (int i = 1; i <= 12; ++i) {
+    settings.max_seconds = 0.003 * i;
+    const RenderResult result = render(cornell(), cornell().scene.cameras[0], settings);
+    EXPECT_EQ(result.stop, StopReason::max_seconds);
+    EXPECT_GE(result.samples_per_pixel, 2);
+    EXPECT_TRUE(std::isfinite(result.relative_error)) << result.samples_per_pixel << " samples";
+    EXPECT_GT(result.relative_error, 0.0);
+  }
+}
+
 TEST(Render, SilhouetteOfASphereHasItsClosedForm) {
   // D23: the fraction of a square image a sphere covers is pi R^2 / (D^2 - R^2) / (4 tan^2(f / 2)).
   scene::Scene scene;
