@@ -144,6 +144,11 @@ struct KnownConvention {
 /// @throws InputError naming it where there is none of that name
 [[nodiscard]] const KnownConvention& known_convention(const std::string& name);
 
+/// {"bands", "convention": the known one's name, "coefficients": its numbers in rows}, as to_json of lighting.hpp for
+/// the first, ours; read_coefficients refuses all others.
+/// @throws InputError as from_ours, and for more bands than the convention has
+[[nodiscard]] std::string to_json(const ShRgb& lighting, const KnownConvention& known);
+
 /// In words, as the table of CONVENTIONS.md has them.
 [[nodiscard]] std::string to_string(Arrangement arrangement);
 [[nodiscard]] std::string to_string(Sign sign);

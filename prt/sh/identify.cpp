@@ -27,13 +27,8 @@ void require_usable(std::span<const double> values) {
     if (!std::isfinite(values[i]))
       throw InputError(fmt::format("number {}: not finite: {}", i + 1, values[i]));
   }
-  if (splits_of(values.size()).empty() && !is_half_count(values.size())) {
-    throw InputError(
-        fmt::format("{} numbers: expected n^2 (one channel), 3 n^2 (red, green, blue), 4 n^2, 6 n^2, or 28 "
-                    "(packed for shaders), "
-                    "n = 1 to {}",
-                    values.size(), kMostIdentifiedBands));
-  }
+  const std::string fault = fault_of_count(values.size());
+  if (!fault.empty()) throw InputError(fault);
 }
 
 // ---------------------------------------------------------------- trials
@@ -96,10 +91,9 @@ double log_odds(const Trial& best, const Trial& other) {
 /// The least freedom whose best trial is not far behind that of more freedom.
 std::vector<Trial> least_free_trials(std::span<const double> values, const ShRgb& light) {
   std::vector<Trial> kept = sorted_trials(values, light, Freedom::none);
-  if (splits_of(values.size()).empty()) return kept;
   for (const Freedom freedom : {Freedom::scale, Freedom::degrees}) {
     std::vector<Trial> freer = sorted_trials(values, light, freedom);
-    const bool is_needed = kept.empty() || log_odds(freer.front(), kept.front()) > kDecisiveLogOdds;
+    const bool is_needed = log_odds(freer.front(), kept.front()) > kDecisiveLogOdds;
     if (is_needed) kept = std::move(freer);
   }
   return kept;
@@ -230,6 +224,15 @@ bool is_explained(const Trial& best) {
 
 }  // namespace
 
+std::string fault_of_count(std::size_t count) {
+  if (!splits_of(count).empty()) return "";
+  return fmt::format(
+      "{} numbers: expected n^2 (one channel), 3 n^2 (red, green, blue), 4 n^2, 2 n^2 or 6 n^2 (SHTOOLS), or "
+      "28 "
+      "(packed for shaders), n = 1 to {}",
+      count, kMostIdentifiedBands);
+}
+
 std::vector<Split> splits_of(std::size_t count) {
   std::vector<Split> splits;
   for (int bands = 1; bands <= kMostIdentifiedBands; ++bands) {
@@ -262,7 +265,6 @@ Identification identify(std::span<const double> values, const ShRgb& light) {
     }
   }
   const std::vector<Trial> trials = least_free_trials(values, light);
-  if (trials.empty()) throw InputError("sh::identify: these numbers need a light of more bands");
   std::vector<Candidate> candidates = candidates_of(trials);
   Identification result;
   result.tied =

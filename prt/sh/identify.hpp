@@ -68,6 +68,11 @@ struct Bound {
 /// @throws InputError as identify
 [[nodiscard]] std::vector<Bound> passive_bounds(std::span<const double> values);
 
+/// Why no convention has that many numbers; empty where one has.
+[[nodiscard]] std::string fault_of_count(std::size_t count);
+/// Whether functions on a hemisphere make so many numbers: a light of kBandsForHalfFunctions is then worth having.
+[[nodiscard]] bool is_half_count(std::size_t count);
+
 /// How the numbers of a count can be split: layouts and bands. Empty where no layout has that many.
 struct Split {
   Layout layout = Layout::interleaved;

@@ -49,17 +49,14 @@ Bound bound_of(const std::vector<RgbD>& rows, const Convention& scaling, const S
 }  // namespace
 
 std::vector<Bound> passive_bounds(std::span<const double> values) {
-  const std::vector<Split> splits = splits_of(values.size());
-  if (splits.empty()) {
-    throw InputError(fmt::format("{} numbers: no number of bands from 1 to {} has so many", values.size(),
-                                 kMostIdentifiedBands));
-  }
+  const std::string fault = fault_of_count(values.size());
+  if (!fault.empty()) throw InputError(fault);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i]))
       throw InputError(fmt::format("number {}: not finite: {}", i + 1, values[i]));
   }
   std::vector<Bound> bounds;
-  for (const Split& split : splits) {
+  for (const Split& split : splits_of(values.size())) {
     const std::vector<RgbD> rows = rows_of(values, split);
     for (const Convention& scaling : scalings(split.bands, Freedom::scale)) {
       const bool is_scaled_radiance =

@@ -32,8 +32,6 @@ struct Trial {
 /// Functions on a hemisphere. @param lights  turned_lights with all the bands there are
 [[nodiscard]] std::vector<Trial> half_trials(std::span<const double> values,
                                              const std::vector<ShRgb>& lights);
-/// Whether functions on a hemisphere make so many numbers.
-[[nodiscard]] bool is_half_count(std::size_t count);
 
 /// Two sums that tell maps apart: of the numbers that the convention makes of a light of random numbers.
 using Fingerprint = std::array<double, 2>;

@@ -1,8 +1,11 @@
 // The conventions of others, as read in their sources (snapshots: a project may have changed since).
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "prt/sh/convention.hpp"
 #include "reference/base/error.hpp"
+#include "reference/base/text.hpp"
 
 namespace plumbline::sh {
 namespace {
@@ -201,7 +204,9 @@ const KnownConvention& known_convention(const std::string& name) {
   const Rows& rows = known_conventions();
   const auto found =
       std::find_if(rows.begin(), rows.end(), [&](const KnownConvention& row) { return row.name == name; });
-  if (found == rows.end()) throw InputError("unknown convention: " + name);
+  if (found == rows.end()) {
+    throw InputError(fmt::format("unknown convention \"{}\" (see `plumbline conventions`)", one_line(name)));
+  }
   return *found;
 }
 

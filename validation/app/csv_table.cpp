@@ -68,7 +68,8 @@ std::vector<CsvRow> read_csv(const std::filesystem::path& path, const std::vecto
     const std::vector<std::string_view> cells = cells_of(*line);
     const bool is_header = is_first && holds_no_number(cells);
     is_first = false;
-    if (!is_header) table.push_back(parse_row(cells, names, fmt::format("{}: line {}", path.string(), number)));
+    if (!is_header)
+      table.push_back(parse_row(cells, names, fmt::format("{}: line {}", path.string(), number)));
   }
   if (table.empty()) throw InputError(path.string() + ": holds no " + rows);
   return table;

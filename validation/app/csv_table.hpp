@@ -16,7 +16,7 @@ struct CsvRow {
 /// start with # and a first line that holds no number (the columns' names) are skipped.
 /// @param rows  what the rows are, for the message where there are none: "points"
 /// @throws InputError naming file and line: too few columns, not a number, not finite, no row
-[[nodiscard]] std::vector<CsvRow> read_csv(const std::filesystem::path& path, const std::vector<std::string>& names,
-                                           const std::string& rows);
+[[nodiscard]] std::vector<CsvRow> read_csv(const std::filesystem::path& path,
+                                           const std::vector<std::string>& names, const std::string& rows);
 
 }  // namespace plumbline::app

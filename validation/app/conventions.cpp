@@ -1,0 +1,110 @@
+// plumbline conventions: the spherical-harmonic conventions of others.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "prt/sh/convention.hpp"
+#include "validation/app/options.hpp"
+#include "validation/app/verbs.hpp"
+
+namespace plumbline::app {
+namespace {
+
+struct Options {
+  bool is_markdown = false;
+  std::string json;
+};
+
+/// A Markdown table's columns; each a function of a row.
+struct Column {
+  const char* title;
+  std::string (*text)(const sh::KnownConvention& known);
+};
+
+std::string normalization_of(const sh::KnownConvention& known) {
+  const sh::Convention& c = known.convention;
+  return c.functions == sh::Functions::sphere ? to_string(c.normalization, c.role) : to_string(c.functions);
+}
+std::string notes_of(const sh::KnownConvention& known) {
+  std::string text = known.notes;
+  if (known.unstated.empty()) return text;
+  if (!text.empty()) text += "; ";
+  return text + "its source leaves open: " + known.unstated;
+}
+
+constexpr std::array kColumns{
+    Column{"name", [](const sh::KnownConvention& k) { return "`" + k.name + "`"; }},
+    Column{"who", [](const sh::KnownConvention& k) { return k.project; }},
+    Column{"where", [](const sh::KnownConvention& k) { return k.where; }},
+    Column{"arrangement", [](const sh::KnownConvention& k) { return to_string(k.convention.arrangement); }},
+    Column{"sign", [](const sh::KnownConvention& k) { return to_string(k.convention.sign); }},
+    Column{"axes", [](const sh::KnownConvention& k) { return to_string(k.convention.axes); }},
+    Column{"normalisation", normalization_of},
+    Column{"of", [](const sh::KnownConvention& k) { return to_string(k.convention.quantity); }},
+    Column{"layout", [](const sh::KnownConvention& k) { return to_string(k.convention.layout); }},
+    Column{"notes", notes_of},
+};
+
+std::string markdown() {
+  std::string text = "|";
+  for (const Column& column : kColumns) text += fmt::format(" {} |", column.title);
+  text += "\n|";
+  for (std::size_t i = 0; i < kColumns.size(); ++i) text += " --- |";
+  text += "\n";
+  for (const sh::KnownConvention& known : sh::known_conventions()) {
+    text += "|";
+    for (const Column& column : kColumns) {
+      const std::string cell = column.text(known);
+      text += cell.empty() ? " |" : " " + cell + " |";
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::string listing() {
+  std::string text;
+  for (const sh::KnownConvention& known : sh::known_conventions()) {
+    const sh::Convention& c = known.convention;
+    text += fmt::format("{:<30} {}: {}\n{:<30} {}; {}; axes {}; {} of {}; {}\n", known.name, known.project,
+                        known.where, "", to_string(c.arrangement), to_string(c.sign), to_string(c.axes),
+                        normalization_of(known), to_string(c.quantity), to_string(c.layout));
+    const std::string notes = notes_of(known);
+    if (!notes.empty()) text += fmt::format("{:<30} {}\n", "", notes);
+  }
+  return text;
+}
+
+nlohmann::json json_listing() {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const sh::KnownConvention& known : sh::known_conventions()) {
+    nlohmann::json row = nlohmann::json::object();
+    for (const Column& column : kColumns) row[column.title] = column.text(known);
+    row["name"] = known.name;
+    row["max_bands"] = known.max_bands;
+    rows.push_back(std::move(row));
+  }
+  return {{"conventions", rows}};
+}
+
+int run(const Options& options) {
+  require_destinations({{"--json", options.json, ""}});
+  if (options.json != "-") write_output("-", options.is_markdown ? markdown() : listing());
+  write_json(options.json, json_listing());
+  return kSuccess;
+}
+
+}  // namespace
+
+void register_conventions(CLI::App& app, Action& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("conventions", "list the spherical-harmonic conventions of others");
+  verb->add_flag("--markdown", options->is_markdown, "as the table of CONVENTIONS.md");
+  add_json(*verb, options->json, "the list");
+  verb->footer(
+      "Write coefficients in one of them: plumbline project ENV --bands 3 --convention NAME\n"
+      "Find out which one coefficients are in: plumbline identify COEFFS.json --env ENV\n"
+      "Example: plumbline conventions");
+  on_chosen(*verb, options, chosen, &run);
+}
+
+}  // namespace plumbline::app
