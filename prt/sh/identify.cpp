@@ -68,6 +68,7 @@ std::vector<Trial> trials_of(std::span<const double> values, const Split& split,
 std::vector<Trial> sorted_trials(std::span<const double> values, const ShRgb& light, Freedom freedom) {
   std::vector<Trial> all;
   for (const Split& split : splits_of(values.size())) {
+    if (split.bands > light.bands) continue;
     std::vector<Trial> trials = trials_of(values, split, light, freedom);
     std::move(trials.begin(), trials.end(), std::back_inserter(all));
   }
@@ -88,11 +89,20 @@ double log_odds(const Trial& best, const Trial& other) {
          std::log((other.squared_residual + floor) / (best.squared_residual + floor));
 }
 
+/// No freedom could bring the residual below zero: whether even that would not be far ahead of the best trial.
+bool is_at_noise(const Trial& best) {
+  Trial perfect = best;
+  perfect.squared_residual = 0.0;
+  return log_odds(perfect, best) <= kDecisiveLogOdds;
+}
+
 /// The least freedom whose best trial is not far behind that of more freedom.
 std::vector<Trial> least_free_trials(std::span<const double> values, const ShRgb& light) {
   std::vector<Trial> kept = sorted_trials(values, light, Freedom::none);
   for (const Freedom freedom : {Freedom::scale, Freedom::degrees}) {
+    if (is_at_noise(kept.front())) break;
     std::vector<Trial> freer = sorted_trials(values, light, freedom);
+    if (freer.empty()) continue;
     const bool is_needed = log_odds(freer.front(), kept.front()) > kDecisiveLogOdds;
     if (is_needed) kept = std::move(freer);
   }
@@ -218,6 +228,12 @@ std::vector<Candidate> candidates_of(const std::vector<Trial>& trials) {
   return candidates;
 }
 
+/// Of those that fit equally well: known ones first, then the plainest.
+bool is_plainer(const Candidate& a, const Candidate& b) {
+  if (a.known.empty() != b.known.empty()) return b.known.empty();
+  return complexity(a.readings.front()) < complexity(b.readings.front());
+}
+
 bool is_explained(const Trial& best) {
   return best.squared_residual <= kUnexplainedPart * best.squared_variation + kNoiseFloor * kNoiseFloor;
 }
@@ -258,19 +274,21 @@ std::vector<RgbD> rows_of(std::span<const double> values, const Split& split) {
 
 Identification identify(std::span<const double> values, const ShRgb& light) {
   require_usable(values);
-  for (const Split& split : splits_of(values.size())) {
-    if (split.bands > light.bands) {
-      throw InputError(
-          fmt::format("sh::identify: expected a light of {} bands, got {}", split.bands, light.bands));
-    }
+  const std::vector<Split> splits = splits_of(values.size());
+  const bool is_enough = std::any_of(splits.begin(), splits.end(),
+                                     [&](const Split& split) { return split.bands <= light.bands; });
+  if (!is_enough) {
+    throw InputError(fmt::format("sh::identify: {} numbers need a light of at least {} bands, got {}",
+                                 values.size(), splits.front().bands, light.bands));
   }
   const std::vector<Trial> trials = least_free_trials(values, light);
   std::vector<Candidate> candidates = candidates_of(trials);
   Identification result;
-  result.tied =
-      static_cast<std::size_t>(std::count_if(candidates.begin(), candidates.end(), [](const Candidate& c) {
-        return c.log_odds_behind_best < kDecisiveLogOdds;
-      }));
+  const auto first_behind = std::find_if(candidates.begin(), candidates.end(), [](const Candidate& c) {
+    return c.log_odds_behind_best >= kDecisiveLogOdds;
+  });
+  std::stable_sort(candidates.begin(), first_behind, is_plainer);
+  result.tied = static_cast<std::size_t>(first_behind - candidates.begin());
   if (!is_explained(trials.front())) {
     result.verdict = Verdict::unexplained;
     result.tied = 0;

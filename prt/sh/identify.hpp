@@ -51,7 +51,7 @@ struct Identification {
 /// does not explain the numbers. The noise is estimated from the best candidate's residual; candidates within
 /// kDecisiveLogOdds of it (n^2 independent numbers, whatever the channels) are tied.
 /// @param values  as many as some convention takes, finite
-/// @param light   what was projected, in our convention; at least as many bands as the values
+/// @param light   what was projected, in our convention; splits of the numbers into more bands are left out
 /// @throws InputError for a number of values that no layout has, a non-finite one, or too few bands of light
 [[nodiscard]] Identification identify(std::span<const double> values, const ShRgb& light);
 

@@ -63,8 +63,9 @@ std::vector<Bound> passive_bounds(std::span<const double> values) {
           scaling.quantity == Quantity::radiance_over_pi || scaling.quantity == Quantity::radiance_over_4pi;
       const bool is_scaled_irradiance = scaling.quantity == Quantity::irradiance_over_pi ||
                                         scaling.quantity == Quantity::irradiance_over_pi_twice;
-      if (is_scaled_radiance || is_scaled_irradiance)
-        continue;  // the ratios are those of radiance and irradiance
+      const bool is_scaled = scaling.normalization == Normalization::four_pi;
+      // Up to a scale these are others'.
+      if (is_scaled_radiance || is_scaled_irradiance || is_scaled) continue;
       bounds.push_back(bound_of(rows, scaling, split));
     }
   }

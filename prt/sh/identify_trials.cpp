@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <random>
 
 #include "prt/sh/convention_layout.hpp"
@@ -15,6 +17,8 @@ constexpr std::array kArrangements{Arrangement::ascending, Arrangement::descendi
                                    Arrangement::zero_first};
 constexpr std::array kHalfFunctions{Functions::h_basis_4, Functions::h_basis_6, Functions::h_basis_4_half_dc,
                                     Functions::cosine_lightmap};
+/// Residual of a convention for which no positive factor is near the numbers.
+constexpr double kHopeless = std::numeric_limits<double>::infinity();
 constexpr std::array kHalfLayouts{Layout::interleaved, Layout::planar, Layout::rgba};
 
 double squared(const RgbD& v) {
@@ -52,35 +56,47 @@ std::vector<RgbD> expected_rows(const ShRgb& light, const Convention& convention
   return rows;
 }
 
-/// Least squares: the factor that brings `from` nearest to `to` in places [begin, end); none below 0.
-double fitted(const std::vector<RgbD>& from, const std::vector<RgbD>& to, std::size_t begin,
-              std::size_t end) {
+/// Least squares: the factor that brings `from` nearest to `to` in places [begin, end). None below the noise floor: a
+/// factor that is zero or negative explains nothing.
+std::optional<double> fitted(const std::vector<RgbD>& from, const Target& to, std::size_t begin,
+                             std::size_t end) {
   double product = 0.0;
   double size = 0.0;
   for (std::size_t i = begin; i < end; ++i) {
-    product += glm::dot(from[i], to[i]);
+    product += glm::dot(from[i], to.rows[i]);
     size += squared(from[i]);
   }
-  return size > 0.0 ? std::max(0.0, product / size) : 0.0;
+  if (!(product > 0.0 && size > 0.0)) return std::nullopt;
+  const bool is_noise = product <= kNoiseFloor * std::sqrt(size * to.size);
+  return is_noise ? std::nullopt : std::optional(product / size);
+}
+
+/// Takes a factor for each range of rows from the numbers; false where there is none.
+bool fit_factors(std::vector<RgbD>& expected, const Target& target, const std::vector<std::size_t>& limits,
+                 std::vector<double>& factors) {
+  for (std::size_t k = 0; k + 1 < limits.size(); ++k) {
+    const std::optional<double> factor = fitted(expected, target, limits[k], limits[k + 1]);
+    if (!factor) return false;
+    factors.push_back(*factor);
+    for (std::size_t i = limits[k]; i < limits[k + 1]; ++i) expected[i] *= *factor;
+  }
+  return true;
 }
 
 /// Takes what is free from the numbers, and measures what remains.
 void fit(Trial& trial, std::vector<RgbD>& expected, const Target& target, Freedom freedom) {
-  if (freedom == Freedom::scale) {
-    trial.scale = fitted(expected, target.rows, 0, expected.size());
-    for (RgbD& row : expected) row *= trial.scale;
-  }
+  std::vector<std::size_t> limits{0};  // where ranges with a factor of their own end
+  if (freedom == Freedom::scale) limits.push_back(expected.size());
   if (freedom == Freedom::degrees) {
-    trial.convention.factors.clear();
-    for (std::size_t l = 0; l * l < expected.size(); ++l) {
-      const double factor = fitted(expected, target.rows, l * l, (l + 1) * (l + 1));
-      trial.convention.factors.push_back(factor);
-      for (std::size_t i = l * l; i < (l + 1) * (l + 1); ++i) expected[i] *= factor;
-    }
+    for (std::size_t l = 1; l * l <= expected.size(); ++l) limits.push_back(l * l);
   }
+  std::vector<double> factors;
+  const bool is_fitted = fit_factors(expected, target, limits, factors);
+  if (freedom == Freedom::scale && is_fitted) trial.scale = factors.front();
+  if (freedom == Freedom::degrees) trial.convention.factors = factors;
   double residual = 0.0;
   for (std::size_t i = 0; i < expected.size(); ++i) residual += squared(target.rows[i] - expected[i]);
-  trial.squared_residual = fraction(residual, target.size);
+  trial.squared_residual = is_fitted ? fraction(residual, target.size) : kHopeless;
   trial.squared_variation = fraction(target.variation, target.size);
   trial.rows = expected.size();
 }
@@ -176,7 +192,7 @@ std::vector<Trial> sphere_trials(std::span<const double> values, const Split& sp
         trial.convention.layout = split.layout;
         std::vector<RgbD> expected = expected_rows(lights[a], scaling, factors, places);
         fit(trial, expected, target, freedom);
-        trials.push_back(std::move(trial));
+        if (trial.squared_residual < kHopeless) trials.push_back(std::move(trial));
       }
     }
   }

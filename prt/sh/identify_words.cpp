@@ -1,10 +1,10 @@
 #include "prt/sh/identify_words.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
-#include <map>
 
 namespace plumbline::sh {
 namespace {
@@ -46,6 +46,16 @@ std::array<std::vector<std::string>, kChoices> alternatives(std::span<const Cand
   return result;
 }
 
+/// "known as: A, B (one map) | C (another)"
+std::string known_line(std::span<const Candidate> tied) {
+  std::string line;
+  for (const Candidate& candidate : tied) {
+    if (candidate.known.empty()) continue;
+    line += (line.empty() ? "known as: " : " | ") + fmt::format("{}", fmt::join(candidate.known, ", "));
+  }
+  return line;
+}
+
 }  // namespace
 
 int complexity(const Convention& c) {
@@ -73,6 +83,8 @@ std::vector<std::string> differences(std::span<const Candidate> tied) {
   const auto others = alternatives(tied);
   const Words first = words_of(tied.front().readings.front());
   std::vector<std::string> lines;
+  const std::string known = known_line(tied);
+  if (!known.empty()) lines.push_back(known);
   for (std::size_t i = 0; i < kChoices; ++i) {
     if (others[i].empty()) continue;
     std::string line = fmt::format("{}: {}", kNames[i], first[i]);
@@ -88,7 +100,7 @@ std::vector<std::string> remedies(std::span<const Candidate> tied, bool is_unifo
   std::vector<std::string> lines;
   if (is_uniform) {
     lines.emplace_back(
-        "the numbers hold degree 0 only: any light that is not the same from everywhere says more");
+        "everything: a light that is not the same from everywhere (these numbers hold degree 0 only)");
   }
   if (!others[kArrangement].empty() || !others[kSignAndAxes].empty()) {
     lines.emplace_back(

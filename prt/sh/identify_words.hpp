@@ -13,7 +13,8 @@ namespace plumbline::sh {
 [[nodiscard]] int complexity(const Convention& convention);
 /// The same six choices (factors aside).
 [[nodiscard]] bool is_same_reading(const Convention& a, const Convention& b);
-/// What the tied candidates differ in from the first, one line a choice, each candidate in its nearest reading.
+/// Which known conventions are tied, and what the tied candidates differ in from the first, one line a choice, each
+/// candidate in its nearest reading.
 [[nodiscard]] std::vector<std::string> differences(std::span<const Candidate> tied);
 /// What would tell them apart.
 [[nodiscard]] std::vector<std::string> remedies(std::span<const Candidate> tied, bool is_uniform);

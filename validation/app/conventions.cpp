@@ -1,8 +1,11 @@
 // plumbline conventions: the spherical-harmonic conventions of others.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
 
 #include "prt/sh/convention.hpp"
+#include "prt/sh/identify.hpp"
 #include "validation/app/options.hpp"
 #include "validation/app/verbs.hpp"
 
@@ -11,6 +14,7 @@ namespace {
 
 struct Options {
   bool is_markdown = false;
+  LightOptions light;
   std::string json;
 };
 
@@ -86,8 +90,69 @@ nlohmann::json json_listing() {
   return {{"conventions", rows}};
 }
 
+// ---------------------------------------------------------------- each of them written and recognised again
+
+struct Recognition {
+  std::string verdict;  // "right" or what is wrong
+  std::size_t equal = 0;
+  double residual = 0.0;
+  double next_residual = 0.0;
+  double log10_odds = 0.0;
+};
+
+/// The light in a known convention, rounded to single precision, put before identify.
+Recognition recognised(const sh::KnownConvention& known, const sh::ShRgb& light) {
+  constexpr int kBands = 3;
+  const auto count = static_cast<std::ptrdiff_t>(sh::coefficient_count(kBands));
+  const sh::ShRgb low{kBands, {light.coefficients.begin(), light.coefficients.begin() + count}};
+  const bool is_half = known.convention.functions != sh::Functions::sphere;
+  std::vector<double> values = sh::from_ours(is_half ? light : low, known.convention);
+  for (double& v : values) v = static_cast<double>(static_cast<float>(v));
+  const sh::Identification answer = sh::identify(values, light);
+  const sh::Candidate& best = answer.ranking.front();
+  Recognition result;
+  const bool is_named = std::find(best.known.begin(), best.known.end(), known.name) != best.known.end();
+  if (answer.verdict != sh::Verdict::identified) {
+    result.verdict = answer.verdict == sh::Verdict::undecided ? "undecided" : "unexplained";
+  } else {
+    result.verdict = is_named ? "right" : "WRONG";
+  }
+  result.equal = best.known.size();
+  result.residual = best.residual;
+  if (answer.ranking.size() > 1) {
+    result.next_residual = answer.ranking[1].residual;
+    result.log10_odds = answer.ranking[1].log_odds_behind_best / std::log(10.0);
+  }
+  return result;
+}
+
+int report_recognition(const Options& options) {
+  constexpr int kBandsOfLight = 20;
+  const sh::ShRgb light = sh::project_radiance(load(options.light), kBandsOfLight);
+  std::string text = fmt::format("{:<30} {:<12} {:>10} {:>10} {:>10} {:>12}\n", "convention", "identify",
+                                 "same as", "residual", "the next", "log10 odds");
+  nlohmann::json rows = nlohmann::json::array();
+  int code = kSuccess;
+  for (const sh::KnownConvention& known : sh::known_conventions()) {
+    const Recognition r = recognised(known, light);
+    if (r.verdict != "right") code = kCheckFailed;
+    text += fmt::format("{:<30} {:<12} {:>10} {:>10.1e} {:>10.1e} {:>12.1f}\n", known.name, r.verdict,
+                        r.equal, r.residual, r.next_residual, r.log10_odds);
+    rows.push_back({{"name", known.name},
+                    {"identify", r.verdict},
+                    {"same_numbers", r.equal},
+                    {"residual", number(r.residual)},
+                    {"next_residual", number(r.next_residual)},
+                    {"log10_odds", number(r.log10_odds)}});
+  }
+  if (options.json != "-") write_output("-", text);
+  write_json(options.json, {{"conventions", rows}});
+  return code;
+}
+
 int run(const Options& options) {
   require_destinations({{"--json", options.json, ""}});
+  if (!options.light.source.empty()) return report_recognition(options);
   if (options.json != "-") write_output("-", options.is_markdown ? markdown() : listing());
   write_json(options.json, json_listing());
   return kSuccess;
@@ -99,8 +164,11 @@ void register_conventions(CLI::App& app, Action& chosen) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("conventions", "list the spherical-harmonic conventions of others");
   verb->add_flag("--markdown", options->is_markdown, "as the table of CONVENTIONS.md");
+  add_light_options(*verb, options->light, false);
   add_json(*verb, options->json, "the list");
   verb->footer(
+      "With --env: whether identify recognises each, from that light in single precision; exit code 1 when "
+      "not.\n"
       "Write coefficients in one of them: plumbline project ENV --bands 3 --convention NAME\n"
       "Find out which one coefficients are in: plumbline identify COEFFS.json --env ENV\n"
       "Example: plumbline conventions");

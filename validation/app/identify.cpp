@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "reference/base/error.hpp"
 #include "validation/app/csv_table.hpp"
@@ -98,14 +99,15 @@ std::string reading_line(const sh::Candidate& candidate, const sh::Convention& r
 }
 
 std::string odds_text(double log_odds) {
-  return fmt::format("1 : 10^{:.1f}", log_odds / std::log(10.0));
+  if (log_odds <= 0.0) return "best";
+  return fmt::format("odds 1 : 10^{:.1f}", log_odds / std::log(10.0));
 }
 
 std::string ranking_text(const sh::Identification& answer) {
   std::string text;
   for (std::size_t i = 0; i < answer.ranking.size(); ++i) {
     const sh::Candidate& candidate = answer.ranking[i];
-    text += fmt::format("  {}. residual {:.2g}, odds {}: {}\n     {}\n", i + 1, candidate.residual,
+    text += fmt::format("  {}. residual {:.2g}, {}: {}\n     {}\n", i + 1, candidate.residual,
                         odds_text(candidate.log_odds_behind_best),
                         candidate.known.empty() ? "no known project" : names_of(candidate.known),
                         reading_line(candidate, candidate.readings.front()));
@@ -203,25 +205,42 @@ nlohmann::json answer_json(const sh::Identification& answer) {
 
 // ---------------------------------------------------------------- without a light
 
-std::string bound_text(const sh::Bound& bound) {
-  const sh::Convention& c = bound.convention;
-  return fmt::format(
-      "  {:<9} {} of {}, {} bands, {}: degree {} at {:.3g} of its bound\n",
-      bound.is_excluded ? "excluded" : "possible", to_string(c.normalization, c.role), to_string(c.quantity),
-      bound.bands,
-      bound.is_one_channel && c.layout == sh::Layout::planar ? "one channel" : to_string(c.layout),
-      bound.degree, bound.ratio);
+std::string split_name(const sh::Bound& bound) {
+  const bool is_list = bound.is_one_channel && bound.convention.layout == sh::Layout::planar;
+  return fmt::format("{} bands, {}", bound.bands,
+                     is_list ? "one channel" : to_string(bound.convention.layout));
+}
+
+/// One line for what is possible and one for what is excluded, for each way to split the numbers.
+std::string bounds_text(const std::vector<sh::Bound>& bounds) {
+  std::vector<std::string> names;
+  std::map<std::string, std::array<std::string, 2>> lines;
+  for (const sh::Bound& bound : bounds) {
+    const std::string name = split_name(bound);
+    if (!lines.contains(name)) names.push_back(name);
+    const sh::Convention& c = bound.convention;
+    std::string& line = lines[name][bound.is_excluded ? 1 : 0];
+    line += fmt::format("{}{} of {} ({:.3g} at degree {})", line.empty() ? "" : ", ",
+                        to_string(c.normalization, c.role), to_string(c.quantity), bound.ratio, bound.degree);
+  }
+  std::string text;
+  for (const std::string& name : names) {
+    const auto& [possible, excluded] = lines[name];
+    text += fmt::format("  {}\n    possible: {}\n    excluded: {}\n", name,
+                        possible.empty() ? "none" : possible, excluded.empty() ? "none" : excluded);
+  }
+  return text;
 }
 
 int report_bounds(const Options& options, const Numbers& numbers) {
   const std::vector<sh::Bound> bounds = sh::passive_bounds(numbers.values);
   std::string text = fmt::format(
-      "{}: {} numbers: without the light (--env or --directions) only bounds can be checked\n"
-      "for a light that is nowhere negative, up to one scale, sign, axes and arrangement being ascending:\n",
-      options.input, numbers.values.size());
+      "{}: {} numbers: cannot be decided without the light (--env or --directions)\n"
+      "Bounds for a light that is nowhere negative, whatever its scale, sign and axes; above 1 is "
+      "impossible:\n{}",
+      options.input, numbers.values.size(), bounds_text(bounds));
   nlohmann::json rows = nlohmann::json::array();
   for (const sh::Bound& bound : bounds) {
-    text += bound_text(bound);
     rows.push_back({{"normalisation", to_string(bound.convention.normalization, bound.convention.role)},
                     {"quantity", to_string(bound.convention.quantity)},
                     {"layout", to_string(bound.convention.layout)},
@@ -232,9 +251,9 @@ int report_bounds(const Options& options, const Numbers& numbers) {
                     {"excluded", bound.is_excluded}});
   }
   text +=
-      "numbers alone never tell: the Condon-Shortley sign from half a turn about z; mirrored or exchanged "
-      "axes;\n"
-      "radiance from radiance/pi, irradiance E from E/pi, and other scales. Give the light.\n";
+      "Numbers alone never tell the Condon-Shortley sign from half a turn about z, mirrored or exchanged "
+      "axes,\n"
+      "radiance from radiance/pi, irradiance E from E/pi, or other scales.\n";
   if (options.json != "-") write_output("-", text);
   write_json(options.json, {{"verdict", "undecided"}, {"bounds", rows}});
   return kCheckFailed;
