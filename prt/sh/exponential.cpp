@@ -6,6 +6,7 @@
 #include <cmath>
 #include <mutex>
 #include <string>
+#include <utility>
 
 #include "prt/sh/basis.hpp"
 #include "prt/sh/exponential_steps.hpp"
@@ -153,16 +154,22 @@ std::vector<double> scaled_and_squared(const std::vector<double>& f, const Start
   return require_finite_result(std::move(result), where);
 }
 
+/// Row by row, so that sums of half a million terms lose no more than sums of a thousand.
 std::vector<double> project_exponential(const std::vector<double>& f, int bands, int points) {
   const Basis<double> basis(bands);
   std::vector<double> y(f.size());
+  std::vector<double> row(f.size(), 0.0);
   std::vector<double> result(f.size(), 0.0);
+  int column = 0;
   for (const SphereNode& node : sphere_quadrature(points)) {
     basis.evaluate(node.direction.x, node.direction.y, node.direction.z, y);
     double value = 0.0;
     for (std::size_t i = 0; i < f.size(); ++i) value += f[i] * y[i];
     const double weighted = node.weight * std::exp(value);
-    for (std::size_t i = 0; i < f.size(); ++i) result[i] += weighted * y[i];
+    for (std::size_t i = 0; i < f.size(); ++i) row[i] += weighted * y[i];
+    if (++column < 2 * points) continue;
+    column = 0;
+    for (std::size_t i = 0; i < f.size(); ++i) result[i] += std::exchange(row[i], 0.0);
   }
   return result;
 }
@@ -248,7 +255,7 @@ std::vector<double> exponential(const std::vector<double>& f) {
 Reprojected exponential_by_quadrature(const std::vector<double>& f) {
   const int bands = require_input(f, "sh::exponential_by_quadrature");
   constexpr int kMostPoints = 512;
-  constexpr double kRounding = 1e-14;
+  constexpr double kRounding = 1e-13;
   int points = 4 * bands;
   Reprojected result{project_exponential(f, bands, points), 0.0};
   do {

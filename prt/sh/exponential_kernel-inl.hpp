@@ -110,7 +110,7 @@ HWY_INLINE void take_squares(const float* squared, const LanePlan& plan, int don
   }
 }
 
-/// How many lanes hold something not finite: x 0 is NaN for those.
+/// How many lanes hold something not finite: x 0 is NaN for those, and a NaN does not equal itself.
 template <int kBands>
 HWY_INLINE std::size_t count_not_finite(const float* values) {
   const BlockVector d;
@@ -120,7 +120,7 @@ HWY_INLINE std::size_t count_not_finite(const float* values) {
     for (int i = 0; i < kBands * kBands; ++i) {
       sum = hn::Add(sum, hn::Mul(hn::LoadU(d, values + i * kProductLanes + lane), hn::Zero(d)));
     }
-    count += hn::CountTrue(d, hn::Ne(sum, sum));
+    count += hn::Lanes(d) - hn::CountTrue(d, hn::Eq(sum, sum));
   }
   return count;
 }

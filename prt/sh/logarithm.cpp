@@ -25,10 +25,11 @@ void require_finite_input(const std::vector<double>& g, double floor, const char
   }
 }
 
-/// log x / (x - 1), 1 at x = 1.
+/// log x / (x - 1), 1 at x = 1. Near 1 x - 1 is exact and log1p keeps its digits; far below 1 it would lose x.
 double log_quotient(double x) {
   const double difference = x - 1.0;
-  return difference == 0.0 ? 1.0 : std::log1p(difference) / difference;
+  if (difference == 0.0) return 1.0;
+  return (std::abs(difference) < 0.5 ? std::log1p(difference) : std::log(x)) / difference;
 }
 
 // M 1 = g and so (M - I) 1 = g - 1: without clipping the formula is log(M) 1, the inverse of exp(M) 1. With
