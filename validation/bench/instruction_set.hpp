@@ -11,19 +11,19 @@
 
 namespace plumbline::bench {
 
-/// Smallest number first is the best; kBest is what the machine offers. Vectors of 64, 32, 16 and 16 bytes.
-enum Set : std::int64_t { kBest = 0, kAvx512 = 1, kAvx2 = 2, kSse4 = 3, kSse2 = 4 };
+/// Smallest number first is the best; kBest is what the machine offers. Vectors of 64, 32 and 16 bytes.
+enum Set : std::int64_t { kBest = 0, kAvx512 = 1, kAvx2 = 2, kSsse3 = 3, kScalar = 4 };
 
-/// While alive, every dynamic dispatch takes `set` (kSse2: the compiler's own code for plain x86-64).
+/// While alive, every dynamic dispatch takes `set` (kScalar: Highway's fallback for machines with less: one number at a time).
 class InstructionSet {
  public:
   explicit InstructionSet(std::int64_t set) {
-    const std::int64_t mask = set == kAvx512 ? HWY_AVX3
-                              : set == kAvx2 ? HWY_AVX2
-                              : set == kSse4 ? HWY_SSSE3
-                              : set == kSse2 ? HWY_EMU128
-                                             : 0;
-    available_ = mask == 0 || set == kSse2 || (hwy::SupportedTargets() & mask) != 0;
+    const std::int64_t mask = set == kAvx512   ? HWY_AVX3
+                              : set == kAvx2   ? HWY_AVX2
+                              : set == kSsse3  ? HWY_SSSE3
+                              : set == kScalar ? HWY_SCALAR
+                                               : 0;
+    available_ = mask == 0 || set == kScalar || (hwy::SupportedTargets() & mask) != 0;
     if (available_ && mask != 0) hwy::GetChosenTarget().Update(mask);
   }
   ~InstructionSet() { hwy::GetChosenTarget().Update(hwy::SupportedTargets()); }

@@ -130,7 +130,7 @@ BENCHMARK(machine_fill)->ArgsProduct({{32 << 10, 512 << 10, 10 << 20, 160 << 20}
 // What 256 directions fill at 3, 5, 6, 8, 10 and 20 bands of float, and of double at 5 and 20.
 BENCHMARK(machine_fill)
     ->ArgsProduct({{9 << 10, 25 << 10, 36 << 10, 64 << 10, 100 << 10, 400 << 10, 50 << 10, 800 << 10},
-                   {kBest, kAvx512, kAvx2, kSse4, kSse2}});
+                   {kBest, kAvx512, kAvx2, kSsse3, kScalar}});
 // And 100,000 directions of float.
 BENCHMARK(machine_fill)->ArgsProduct({{3600000, 10000384, 40000000, 160000000}, {kBest}});
 
@@ -174,7 +174,7 @@ void machine_fma_f32(benchmark::State& state) {
   }
   state.SetItemsProcessed(static_cast<std::int64_t>(operations));
 }
-BENCHMARK(machine_fma_f32)->Arg(kBest)->Arg(kAvx512)->Arg(kAvx2)->Arg(kSse4)->Arg(kSse2);
+BENCHMARK(machine_fma_f32)->Arg(kBest)->Arg(kAvx512)->Arg(kAvx2)->Arg(kSsse3)->Arg(kScalar);
 
 void machine_fma_f64(benchmark::State& state) {
   const InstructionSet set(state.range(0));
