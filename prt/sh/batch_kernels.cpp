@@ -26,8 +26,9 @@ using Vec = hn::Vec<Tag<T>>;
 template <class T>
 constexpr std::size_t kLanes = hn::MaxLanes(Tag<T>());
 
-/// Two vectors at a time hide the recurrence's latency; at the widest they lie in two blocks.
-constexpr std::size_t kTogether = 2;
+/// Several vectors at a time hide the recurrence's latency, as many as the registers hold.
+template <class T>
+constexpr std::size_t kTogether = sizeof(Vec<T>) == 64 ? 4 : 2;
 
 /// kCount vectors of directions and what the recurrence needs of them.
 template <class T, std::size_t kCount>
@@ -70,6 +71,17 @@ HWY_INLINE void next_azimuth(const Place<T, kCount>& at, Azimuth<T, kCount>& azi
     azimuth.re[u] = hn::NegMulAdd(at.x[u], re, hn::Mul(at.y[u], im));
     azimuth.im[u] = hn::Neg(hn::MulAdd(at.x[u], im, hn::Mul(at.y[u], re)));
   }
+}
+
+/// The azimuth of odd l - m: with the sign of z.
+template <class T, std::size_t kCount>
+HWY_INLINE Azimuth<T, kCount> signed_azimuth(const Place<T, kCount>& at, const Azimuth<T, kCount>& azimuth) {
+  Azimuth<T, kCount> result;
+  for (std::size_t u = 0; u < kCount; ++u) {
+    result.re[u] = hn::Xor(azimuth.re[u], at.sign[u]);
+    result.im[u] = hn::Xor(azimuth.im[u], at.sign[u]);
+  }
+  return result;
 }
 
 /// q_l^m(|z|) of one column and its difference.
@@ -119,11 +131,7 @@ HWY_INLINE void store_degree(const Column<T, kCount>& column, const Azimuth<T, k
 template <bool kIsPair, class T, std::size_t kCount>
 HWY_INLINE void store_column(const RecurrenceTable<T>& table, const Place<T, kCount>& at,
                              const Azimuth<T, kCount>& azimuth, std::size_t m, const T* step, T* const* out) {
-  Azimuth<T, kCount> odd;
-  for (std::size_t u = 0; u < kCount; ++u) {
-    odd.re[u] = hn::Xor(azimuth.re[u], at.sign[u]);
-    if constexpr (kIsPair) odd.im[u] = hn::Xor(azimuth.im[u], at.sign[u]);
-  }
+  const Azimuth<T, kCount> odd = signed_azimuth(at, azimuth);
   Column<T, kCount> column = start_column<T, kCount>(table.starts[m]);
   const auto bands = static_cast<std::size_t>(table.bands);
   for (std::size_t l = m;;) {
@@ -166,6 +174,58 @@ void store_recurrence(const RecurrenceTable<T>& table, const DirectionBlocks<T>&
   }
 }
 
+// The same as straight-line code: the short loops of few bands end in a branch that nobody foresees.
+
+/// Degrees kL … kBands-1 of column kM, whose constants start at `step`.
+template <int kBands, int kM, int kL, class T, std::size_t kCount>
+HWY_INLINE void store_unrolled_degrees(const Place<T, kCount>& at, const Azimuth<T, kCount>& azimuth,
+                                       const Azimuth<T, kCount>& odd, const T* step,
+                                       Column<T, kCount>& column, T* const* out) {
+  store_degree<(kM > 0)>(column, (kL - kM) % 2 == 0 ? azimuth : odd, kL * (kL + 1), kM, out);
+  if constexpr (kL + 1 < kBands) {
+    next_degree(at, step, column);
+    store_unrolled_degrees<kBands, kM, kL + 1>(at, azimuth, odd, step + 3, column, out);
+  }
+}
+
+template <int kBands, int kM, class T, std::size_t kCount>
+HWY_INLINE void store_unrolled_columns(const RecurrenceTable<T>& table, const Place<T, kCount>& at,
+                                       Azimuth<T, kCount>& azimuth, const T* steps, T* const* out) {
+  if constexpr (kM > 0) next_azimuth(at, azimuth);
+  const Azimuth<T, kCount> odd = signed_azimuth(at, azimuth);
+  Column<T, kCount> column = start_column<T, kCount>(table.starts[kM]);
+  store_unrolled_degrees<kBands, kM, kM>(at, azimuth, odd, steps, column, out);
+  if constexpr (kM + 1 < kBands) {
+    store_unrolled_columns<kBands, kM + 1>(table, at, azimuth, steps + 3 * (kBands - 1 - kM), out);
+  }
+}
+
+template <int kBands, std::size_t kCount, class T>
+HWY_NOINLINE void store_unrolled(const RecurrenceTable<T>& table, const DirectionBlocks<T>& in,
+                                 std::size_t first, T* out) {
+  T* places[kCount];
+  for (std::size_t u = 0; u < kCount; ++u) places[u] = out + blocked_index(kBands, first + u * kLanes<T>, 0);
+  const Place<T, kCount> at = place_at<T, kCount>(in, first);
+  Azimuth<T, kCount> azimuth = start_azimuth<T, kCount>(table.scale);
+  store_unrolled_columns<kBands, 0>(table, at, azimuth, table.steps.data(), places);
+}
+
+/// Calls wide(first) for groups of kTogether vectors and narrow(first) for the vectors left over.
+template <class T, class Wide, class Narrow>
+HWY_INLINE void for_vectors(std::size_t count, const Wide& wide, const Narrow& narrow) {
+  constexpr std::size_t kGroup = kTogether<T> * kLanes<T>;
+  std::size_t k = 0;
+  for (; k + kGroup <= count; k += kGroup) wide(k);
+  for (; k < count; k += kLanes<T>) narrow(k);
+}
+
+template <int kBands, class T>
+void store_few(const RecurrenceTable<T>& table, const DirectionBlocks<T>& in, T* out) {
+  for_vectors<T>(
+      in.count, [&](std::size_t k) { store_unrolled<kBands, kTogether<T>>(table, in, k, out); },
+      [&](std::size_t k) { store_unrolled<kBands, 1>(table, in, k, out); });
+}
+
 /// What closed forms give their values to: the blocked layout.
 template <class T>
 struct Store {
@@ -197,14 +257,17 @@ void evaluate_blocks_of(const RecurrenceTable<T>& table, const DirectionBlocks<T
       return store_closed<4>(in, out);
     case 5:
       return store_closed<5>(in, out);
+    case 6:
+      return store_few<6>(table, in, out);
+    case 7:
+      return store_few<7>(table, in, out);
+    case 8:
+      return store_few<8>(table, in, out);
     default:
-      break;
+      return for_vectors<T>(
+          in.count, [&](std::size_t k) { store_recurrence<kTogether<T>>(table, in, k, out); },
+          [&](std::size_t k) { store_recurrence<1>(table, in, k, out); });
   }
-  std::size_t k = 0;
-  for (; k + kTogether * kLanes<T> <= in.count; k += kTogether * kLanes<T>) {
-    store_recurrence<kTogether>(table, in, k, out);
-  }
-  for (; k < in.count; k += kLanes<T>) store_recurrence<1>(table, in, k, out);
 }
 
 // ---------------------------------------------------------------- sums over all coefficients
