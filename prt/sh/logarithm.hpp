@@ -9,8 +9,8 @@
 namespace plumbline::sh {
 
 /// Eigenvalues (function values) below this are raised to it. The thesis says "a small epsilon" and gives none.
-/// With 1/20 the log visibilities of single spheres at 4 bands reach |f^| = 4.85, the limit it states, and
-/// exp(log) comes nearest to the visibility; smaller floors ring (the `exponential` checks print both).
+/// With 1/20 the log visibilities of single spheres at 4 bands reach |f^| = 5.1, near the limit of 4.8 it states,
+/// and exp(log) comes nearest to the visibility; smaller floors ring (1/1000 reaches 10.7).
 inline constexpr double kDefaultFloor = 0.05;
 
 /// A logarithm, and how much of the function was too small for one.

@@ -6,14 +6,14 @@
 #include <string>
 
 #include "prt/sh/basis.hpp"
+#include "prt/sh/plain_numbers.hpp"
+#define PLUMBLINE_SH_PLAIN_NUMBERS
 #include "prt/sh/product_kernel-inl.hpp"
 #include "prt/sh/product_table.hpp"
 #include "reference/base/error.hpp"
 
 namespace plumbline::sh {
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
 
 /// The bands of a vector of n^2 coefficients.
 int bands_of(std::size_t size, const char* where) {
@@ -42,18 +42,18 @@ void require_product_bands(int bands, const char* where) {
 
 template <bool kIsSquare, class Real>
 void multiply_any(int bands, const Real* a, const Real* b, Real* c) {
-  const hn::CappedTag<Real, 1> one;
+  const plain::Number<Real> one;
   switch (bands) {
     case 2:
-      return HWY_NAMESPACE::multiply_lanes<2, 1, kIsSquare>(one, a, b, c);
+      return plain::multiply_lanes<2, 1, kIsSquare>(one, a, b, c);
     case 3:
-      return HWY_NAMESPACE::multiply_lanes<3, 1, kIsSquare>(one, a, b, c);
+      return plain::multiply_lanes<3, 1, kIsSquare>(one, a, b, c);
     case 4:
-      return HWY_NAMESPACE::multiply_lanes<4, 1, kIsSquare>(one, a, b, c);
+      return plain::multiply_lanes<4, 1, kIsSquare>(one, a, b, c);
     case 5:
-      return HWY_NAMESPACE::multiply_lanes<5, 1, kIsSquare>(one, a, b, c);
+      return plain::multiply_lanes<5, 1, kIsSquare>(one, a, b, c);
     case 6:
-      return HWY_NAMESPACE::multiply_lanes<6, 1, kIsSquare>(one, a, b, c);
+      return plain::multiply_lanes<6, 1, kIsSquare>(one, a, b, c);
     default:
       return detail::multiply_table<Real, 1>(bands, a, b, c);
   }

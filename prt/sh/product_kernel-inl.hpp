@@ -1,5 +1,6 @@
 // prt/sh/product_kernel-inl.hpp: straight-line products from product_plan.hpp, for any vector width.
-// Inside the library only; included once for every instruction set, hence no include guard of the usual kind.
+// Inside the library only; included once for every instruction set, hence no include guard of the usual kind. With
+// PLUMBLINE_SH_PLAIN_NUMBERS it takes plain_numbers.hpp in place of Highway.
 #if defined(PLUMBLINE_SH_PRODUCT_KERNEL) == defined(HWY_TARGET_TOGGLE)
 #ifdef PLUMBLINE_SH_PRODUCT_KERNEL
 #undef PLUMBLINE_SH_PRODUCT_KERNEL
@@ -15,9 +16,14 @@
 
 #include "prt/sh/product_plan.hpp"
 
+#ifdef PLUMBLINE_SH_PLAIN_NUMBERS
+namespace plumbline::sh::plain {
+namespace hn = plumbline::sh::plain;
+#else
 HWY_BEFORE_NAMESPACE();
 namespace plumbline::sh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+#endif
 
 // Multiplications and additions stay apart (no fused multiply-add), so that every instruction set gives the
 // same bits.
@@ -132,7 +138,11 @@ HWY_NOINLINE void multiply_lanes(D d, const hn::TFromD<D>* HWY_RESTRICT a,
   for (int i = 0; i < kCount; ++i) hn::StoreU(c[i], d, out + i * kStride);
 }
 
+#ifdef PLUMBLINE_SH_PLAIN_NUMBERS
+}  // namespace plumbline::sh::plain
+#else
 }  // namespace plumbline::sh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
+#endif
 
 #endif  // once for every instruction set
