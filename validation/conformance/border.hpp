@@ -1,0 +1,67 @@
+// validation/conformance/border.hpp: between an implementation's SH convention and Plumbline's.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "reference/base/vector.hpp"
+#include "validation/conformance/plumbline_conformance.h"
+
+namespace plumbline::conformance {
+
+/// CONVENTIONS.md#spherical-harmonics, as the interface writes it.
+[[nodiscard]] plumbline_convention own_convention();
+/// "index l(l+1)+m, Condon-Shortley, orthonormal, axes x y z, radiance, interleaved"; unknown parts say so.
+[[nodiscard]] std::string to_string(const plumbline_convention& convention);
+/// Empty when every part is one of the interface's values and the axes are a signed permutation or all 0; else what
+/// is wrong.
+[[nodiscard]] std::string fault_of(const plumbline_convention& convention);
+
+/// Converts by one matrix a band. Parts that are unknown are taken to be Plumbline's.
+///
+/// With y our functions and y' theirs, y' = S Q y: Q orthogonal (axes, signs, places), S the norm of each degree.
+/// Coefficients of one function f = sum c y = sum c' y' then obey c' = P S^-1 Q c, with P what they are
+/// multiplied by.
+class Border {
+ public:
+  /// For 1 ... max_bands bands. @throws InputError for a convention with a fault
+  Border(const plumbline_convention& convention, int max_bands);
+
+  [[nodiscard]] const plumbline_convention& convention() const { return convention_; }
+  /// Index order, sign, norm and axes are all declared.
+  [[nodiscard]] bool knows_basis() const;
+  /// Also what coefficients are multiplied by.
+  [[nodiscard]] bool knows_coefficients() const;
+  /// The largest number of bands that can be brought back: 3 where the multiplication loses band 3, else the argument.
+  [[nodiscard]] int usable_bands(int bands) const;
+
+  /// n^2 coefficients from ours to theirs and back; n^2 basis values from theirs to ours.
+  [[nodiscard]] std::vector<double> to_theirs(int bands, const std::vector<double>& ours) const;
+  [[nodiscard]] std::vector<double> to_ours(int bands, const std::vector<double>& theirs) const;
+  [[nodiscard]] std::vector<double> basis_to_ours(int bands, const std::vector<double>& theirs) const;
+  /// Vectors t that coefficients are multiplied with, t . c the same on both sides.
+  [[nodiscard]] std::vector<double> dual_to_theirs(int bands, const std::vector<double>& ours) const;
+  [[nodiscard]] std::vector<double> dual_to_ours(int bands, const std::vector<double>& theirs) const;
+  /// n^2 rows of r, g, b in our layout, from the declared layout and convention.
+  [[nodiscard]] std::vector<double> rgb_to_ours(int bands, const std::vector<double>& theirs) const;
+
+ private:
+  using Band = std::vector<double>;  // (2l + 1)^2, row-major: Q of one degree
+  [[nodiscard]] std::vector<double> weighted(std::vector<double> values, int bands, double power) const;
+
+  plumbline_convention convention_;
+  std::vector<Band> bands_;
+};
+
+/// Values of the convention's functions at a direction, from the definition: n^2.
+[[nodiscard]] std::vector<double> convention_basis(const plumbline_convention& convention, int bands,
+                                                   const Vec3d& direction);
+
+/// The convention (index order, sign, norm, axes) whose functions of 1 ... 3 bands these are, at `directions`, to a
+/// relative 1e-3; the plainest axes where several fit. None: no convention of the interface fits.
+/// @param values  directions.size() rows of 9
+[[nodiscard]] std::optional<plumbline_convention> convention_of_basis(const std::vector<Vec3d>& directions,
+                                                                      const std::vector<double>& values);
+
+}  // namespace plumbline::conformance
