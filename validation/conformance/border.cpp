@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "prt/sh/quadrature.hpp"
-#include "prt/sh/zonal.hpp"
 #include "reference/base/error.hpp"
 #include "validation/checks/sh_checks.hpp"
 
@@ -18,92 +17,47 @@ std::size_t size_of(int bands) {
   return static_cast<std::size_t>(bands) * static_cast<std::size_t>(bands);
 }
 
-/// m of the function at `place` 0 … 2l of band l.
-int azimuthal_number(const plumbline_convention& convention, int degree, int place) {
-  if (convention.index_order != PLUMBLINE_INDEX_ZERO_FIRST) return place - degree;
-  return place % 2 == 1 ? (place + 1) / 2 : -place / 2;
-}
-
-double sign_of(const plumbline_convention& convention, int m) {
-  return convention.sign == PLUMBLINE_SIGN_POSITIVE && m % 2 != 0 ? -1.0 : 1.0;
-}
-
-double norm_of(const plumbline_convention& convention, int degree) {
-  switch (convention.norm) {
-    case PLUMBLINE_NORM_FOUR_PI:
-      return std::sqrt(4.0 * kPi);
-    case PLUMBLINE_NORM_SEMI_SCHMIDT:
-      return std::sqrt(4.0 * kPi / (2.0 * degree + 1.0));
-    default:
-      return 1.0;
-  }
-}
-
-Vec3d polar_frame(const plumbline_convention& convention, const Vec3d& w) {
-  if (convention.axes[0] == 0) return w;
-  Vec3d result;
-  for (int k = 0; k < 3; ++k) {
-    const int axis = convention.axes[k];
-    result[k] = axis > 0 ? w[axis - 1] : -w[-axis - 1];
+/// Index l(l+1)+m of the function at each place of band l, from l^2 on.
+std::vector<std::size_t> sources(const sh::Convention& convention, int degree) {
+  std::vector<std::size_t> result(static_cast<std::size_t>(2 * degree + 1));
+  for (int m = -degree; m <= degree; ++m) {
+    const int place = sh::position(convention.arrangement, degree, m) - degree * degree;
+    result.at(static_cast<std::size_t>(place)) = static_cast<std::size_t>(sh::index(degree, m));
   }
   return result;
 }
 
-/// Constant and sign of the function in front of its bare polynomial, l <= 2.
-double polynomial_constant(const plumbline_convention& convention, int degree, int m) {
-  constexpr std::array<double, 9> kSquares{1.0, 3.0, 3.0, 3.0, 15.0, 15.0, 1.25, 15.0, 3.75};
-  const auto place = static_cast<std::size_t>(degree * (degree + 1) + m);
-  if (place >= kSquares.size()) return 0.0;
-  const double sign = m % 2 != 0 && convention.sign != PLUMBLINE_SIGN_POSITIVE ? -1.0 : 1.0;
-  return sign * std::sqrt(kSquares.at(place) / (4.0 * kPi)) * norm_of(convention, degree);
+int degree_of(std::size_t index) {
+  return static_cast<int>(std::sqrt(static_cast<double>(index) + 0.5));
 }
 
-double multiplier(const plumbline_convention& convention, int degree, int m) {
-  const double cosine = sh::clamped_cosine_factor(degree);
-  switch (convention.premultiplication) {
-    case PLUMBLINE_PREMULTIPLIED_RADIANCE_OVER_PI:
-      return 1.0 / kPi;
-    case PLUMBLINE_PREMULTIPLIED_IRRADIANCE:
-      return cosine;
-    case PLUMBLINE_PREMULTIPLIED_IRRADIANCE_OVER_PI:
-      return cosine / kPi;
-    case PLUMBLINE_PREMULTIPLIED_POLYNOMIAL:
-      return cosine / kPi * polynomial_constant(convention, degree, m);
-    default:
-      return 1.0;
-  }
+/// Factor of c_i for i = l(l+1)+m: sign, norm and quantity.
+double weight_of(const sh::Convention& convention, std::size_t index) {
+  const int l = degree_of(index);
+  return sh::coefficient_factor(convention, l, static_cast<int>(index) - l * (l + 1));
 }
 
-bool is_plain(const plumbline_convention& c) {
-  return c.axes[0] == 0 || (c.axes[0] == 1 && c.axes[1] == 2 && c.axes[2] == 3);
-}
-
-std::vector<double> plain_band(const plumbline_convention& convention, int degree) {
-  const int width = 2 * degree + 1;
-  std::vector<double> q(size_of(width), 0.0);
-  for (int place = 0; place < width; ++place) {
-    const int m = azimuthal_number(convention, degree, place);
-    q[static_cast<std::size_t>(place * width + m + degree)] = sign_of(convention, m);
-  }
+std::vector<double> plain_band(const sh::Convention& convention, int degree) {
+  const std::vector<std::size_t> source = sources(convention, degree);
+  std::vector<double> q(size_of(2 * degree + 1), 0.0);
+  for (std::size_t place = 0; place < source.size(); ++place)
+    q[place * source.size() + source[place] - size_of(degree)] = 1.0;
   return q;
 }
 
-/// Q of every degree: integral of the convention's unit-length functions times ours.
-std::vector<std::vector<double>> turned_bands(const plumbline_convention& convention, int max_bands) {
+/// Q of every degree: integral of y_i(their frame) y_j(our frame), i in their order.
+std::vector<std::vector<double>> turned_bands(const sh::Convention& convention, int max_bands) {
   std::vector<std::vector<double>> result;
   for (int l = 0; l < max_bands; ++l) result.emplace_back(size_of(2 * l + 1), 0.0);
-  plumbline_convention unit = convention;
-  unit.norm = PLUMBLINE_NORM_ORTHONORMAL;
   for (const sh::SphereNode& node : sh::sphere_quadrature(max_bands)) {
-    const std::vector<double> theirs = convention_basis(unit, max_bands, node.direction);
+    const std::vector<double> theirs = checks::textbook_basis(max_bands, sh::apply(convention.axes, node.direction));
     const std::vector<double> ours = checks::textbook_basis(max_bands, node.direction);
     for (int l = 0; l < max_bands; ++l) {
-      const auto width = static_cast<std::size_t>(2 * l + 1);
-      const auto first = size_of(l);
-      for (std::size_t i = 0; i < width; ++i)
-        for (std::size_t j = 0; j < width; ++j)
-          result[static_cast<std::size_t>(l)][i * width + j] +=
-              node.weight * theirs[first + i] * ours[first + j];
+      const std::vector<std::size_t> source = sources(convention, l);
+      std::vector<double>& q = result[static_cast<std::size_t>(l)];
+      for (std::size_t i = 0; i < source.size(); ++i)
+        for (std::size_t j = 0; j < source.size(); ++j)
+          q[i * source.size() + j] += node.weight * theirs[source[i]] * ours[size_of(l) + j];
     }
   }
   return result;
@@ -126,25 +80,19 @@ std::vector<double> multiplied(const std::vector<std::vector<double>>& matrices,
   return out;
 }
 
+std::vector<double> times(std::vector<double> values, const std::vector<double>& weights) {
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] *= weights[i];
+  return values;
+}
+std::vector<double> over(std::vector<double> values, const std::vector<double>& weights) {
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] /= weights[i];
+  return values;
+}
+
 bool is_permutation(const int32_t (&axes)[3]) {
   std::array<int, 3> magnitudes{std::abs(axes[0]), std::abs(axes[1]), std::abs(axes[2])};
   std::sort(magnitudes.begin(), magnitudes.end());
   return magnitudes == std::array<int, 3>{1, 2, 3} || magnitudes == std::array<int, 3>{0, 0, 0};
-}
-
-/// All signed permutations, the plainest first: no swap before swaps, few reversals before many.
-std::vector<std::array<int32_t, 3>> all_axes() {
-  std::vector<std::array<int32_t, 3>> result;
-  std::array<int32_t, 3> order{1, 2, 3};
-  do {
-    for (const unsigned signs : {0U, 1U, 2U, 4U, 3U, 5U, 6U, 7U}) {
-      std::array<int32_t, 3> axes = order;
-      for (unsigned k = 0; k < 3; ++k)
-        if ((signs >> k & 1U) != 0U) axes.at(k) = -axes.at(k);
-      result.push_back(axes);
-    }
-  } while (std::next_permutation(order.begin(), order.end()));
-  return result;
 }
 
 bool fits(const plumbline_convention& convention, const std::vector<Vec3d>& directions,
@@ -154,7 +102,7 @@ bool fits(const plumbline_convention& convention, const std::vector<Vec3d>& dire
     const std::vector<double> expected = convention_basis(convention, 3, directions[k]);
     for (std::size_t i = 0; i < expected.size(); ++i) {
       if (!(std::abs(values[k * expected.size() + i] - expected[i]) <=
-            kTolerance * norm_of(convention, 2)))
+            kTolerance * std::max(1.0, std::abs(expected[i]))))
         return false;
     }
   }
@@ -168,92 +116,109 @@ plumbline_convention own_convention() {
           PLUMBLINE_SIGN_CONDON_SHORTLEY,
           PLUMBLINE_NORM_ORTHONORMAL,
           {1, 2, 3},
-          PLUMBLINE_PREMULTIPLIED_RADIANCE,
+          PLUMBLINE_QUANTITY_RADIANCE,
           PLUMBLINE_LAYOUT_INTERLEAVED};
 }
 
 std::string to_string(const plumbline_convention& c) {
-  constexpr std::array kIndex{"index unknown", "index l(l+1)+m", "index m = 0, 1, -1, ..."};
-  constexpr std::array kSign{"sign unknown", "Condon-Shortley", "no Condon-Shortley"};
-  constexpr std::array kNorm{"norm unknown", "orthonormal", "4 pi norm", "semi-Schmidt norm"};
-  constexpr std::array kPre{"multiplication unknown", "radiance",        "radiance / pi",
-                            "irradiance",             "irradiance / pi", "irradiance / pi as bare polynomials"};
-  constexpr std::array kLayout{"layout unknown", "interleaved", "planar"};
-  constexpr std::array kAxis{"-z", "-y", "-x", "?", "x", "y", "z"};
-  const auto at = [](const auto& names, int32_t i) { return names.at(static_cast<std::size_t>(i)); };
-  return fmt::format("{}, {}, {}, axes {} {} {}, {}, {}", at(kIndex, c.index_order), at(kSign, c.sign),
-                     at(kNorm, c.norm), at(kAxis, c.axes[0] + 3), at(kAxis, c.axes[1] + 3),
-                     at(kAxis, c.axes[2] + 3), at(kPre, c.premultiplication), at(kLayout, c.layout));
+  const sh::Convention known = sh_convention(c);
+  const auto or_unknown = [](int32_t value, const std::string& text, const char* what) {
+    return value != 0 ? text : fmt::format("{} unknown", what);
+  };
+  return fmt::format("{}; {}; {}; {}; {}; {}",
+                     or_unknown(c.index_order, sh::to_string(known.arrangement), "index order"),
+                     or_unknown(c.sign, sh::to_string(known.sign), "sign"),
+                     or_unknown(c.norm, sh::to_string(known.normalization, known.role), "norm"),
+                     or_unknown(c.axes[0], sh::to_string(known.axes), "axes"),
+                     or_unknown(c.quantity, sh::to_string(known.quantity), "quantity"),
+                     or_unknown(c.layout, sh::to_string(known.layout), "layout"));
 }
 
 std::string fault_of(const plumbline_convention& c) {
   const auto check = [](const char* name, int32_t value, int32_t last) {
-    return value >= 0 && value <= last ? std::string() : fmt::format("{} = {} (0 to {})", name, value, last);
+    return value >= 0 && value <= last ? std::string()
+                                       : fmt::format("convention.{} = {}, expected 0 to {}", name, value, last);
   };
-  for (const std::string& fault :
-       {check("convention.index_order", c.index_order, PLUMBLINE_INDEX_ZERO_FIRST),
-        check("convention.sign", c.sign, PLUMBLINE_SIGN_POSITIVE),
-        check("convention.norm", c.norm, PLUMBLINE_NORM_SEMI_SCHMIDT),
-        check("convention.premultiplication", c.premultiplication, PLUMBLINE_PREMULTIPLIED_POLYNOMIAL),
-        check("convention.layout", c.layout, PLUMBLINE_LAYOUT_PLANAR)}) {
+  for (const std::string& fault : {check("index_order", c.index_order, PLUMBLINE_INDEX_ZERO_FIRST),
+                                   check("sign", c.sign, PLUMBLINE_SIGN_POSITIVE),
+                                   check("norm", c.norm, PLUMBLINE_NORM_POLYNOMIAL),
+                                   check("quantity", c.quantity, PLUMBLINE_QUANTITY_IRRADIANCE_OVER_PI_TWICE),
+                                   check("layout", c.layout, PLUMBLINE_LAYOUT_PLANAR)}) {
     if (!fault.empty()) return fault;
   }
   if (is_permutation(c.axes)) return {};
-  return fmt::format("convention.axes = {{{}, {}, {}}} (each of 1, 2, 3 once, with a sign; or all 0)", c.axes[0],
+  return fmt::format("convention.axes = {{{}, {}, {}}}, expected 1, 2, 3 in any order and sign, or all 0", c.axes[0],
                      c.axes[1], c.axes[2]);
 }
 
-Border::Border(const plumbline_convention& convention, int max_bands) : convention_(convention) {
-  if (const std::string fault = fault_of(convention); !fault.empty()) throw InputError(fault);
-  if (is_plain(convention)) {
-    for (int l = 0; l < max_bands; ++l) bands_.push_back(plain_band(convention, l));
+sh::Convention sh_convention(const plumbline_convention& c) {
+  constexpr std::array kArrangements{sh::Arrangement::ascending, sh::Arrangement::ascending,
+                                     sh::Arrangement::descending, sh::Arrangement::xyz,
+                                     sh::Arrangement::zero_first};
+  constexpr std::array kNorms{sh::Normalization::orthonormal, sh::Normalization::orthonormal,
+                              sh::Normalization::four_pi,     sh::Normalization::schmidt,
+                              sh::Normalization::unnormalized, sh::Normalization::polynomial};
+  constexpr std::array kQuantities{sh::Quantity::radiance,          sh::Quantity::radiance,
+                                   sh::Quantity::radiance_over_pi,  sh::Quantity::radiance_over_4pi,
+                                   sh::Quantity::irradiance,        sh::Quantity::irradiance_over_pi,
+                                   sh::Quantity::irradiance_over_pi_twice};
+  if (const std::string fault = fault_of(c); !fault.empty()) throw InputError(fault);
+  sh::Convention result;
+  result.arrangement = kArrangements.at(static_cast<std::size_t>(c.index_order));
+  result.sign = c.sign == PLUMBLINE_SIGN_POSITIVE ? sh::Sign::positive : sh::Sign::condon_shortley;
+  result.normalization = kNorms.at(static_cast<std::size_t>(c.norm));
+  result.quantity = kQuantities.at(static_cast<std::size_t>(c.quantity));
+  result.layout = c.layout == PLUMBLINE_LAYOUT_PLANAR ? sh::Layout::planar : sh::Layout::interleaved;
+  for (std::size_t k = 0; k < 3 && c.axes[0] != 0; ++k) {
+    result.axes.axis.at(k) = std::abs(c.axes[k]) - 1;
+    result.axes.sign.at(k) = c.axes[k] > 0 ? 1 : -1;
+  }
+  return result;
+}
+
+Border::Border(const plumbline_convention& convention, int max_bands)
+    : declared_(convention), convention_(sh_convention(convention)) {
+  const int bands = usable_bands(max_bands);
+  for (int l = 0; l < bands; ++l)
+    for (const std::size_t source : sources(convention_, l)) weights_.push_back(weight_of(convention_, source));
+  sh::Convention radiance = convention_;
+  radiance.quantity = sh::Quantity::radiance;
+  for (int l = 0; l < bands; ++l)
+    for (const std::size_t source : sources(radiance, l)) basis_weights_.push_back(weight_of(radiance, source));
+  if (convention_.axes == sh::SignedAxes{}) {
+    for (int l = 0; l < bands; ++l) bands_.push_back(plain_band(convention_, l));
   } else {
-    bands_ = turned_bands(convention, max_bands);
+    bands_ = turned_bands(convention_, bands);
   }
 }
 
 bool Border::knows_basis() const {
-  return convention_.index_order != 0 && convention_.sign != 0 && convention_.norm != 0 && convention_.axes[0] != 0;
+  return declared_.index_order != 0 && declared_.sign != 0 && declared_.norm != 0 && declared_.axes[0] != 0;
 }
 
 bool Border::knows_coefficients() const {
-  return knows_basis() && convention_.premultiplication != 0;
+  return knows_basis() && declared_.quantity != 0;
 }
 
 int Border::usable_bands(int bands) const {
-  return convention_.premultiplication >= PLUMBLINE_PREMULTIPLIED_IRRADIANCE ? std::min(bands, 3) : bands;
+  const bool is_limited = declared_.quantity >= PLUMBLINE_QUANTITY_IRRADIANCE || declared_.norm == PLUMBLINE_NORM_POLYNOMIAL;
+  return is_limited ? std::min(bands, 3) : bands;
 }
 
-// c' = W Q c with W = P S^-1 diagonal, so that t' = W^-1 Q t keeps t' . c' = t . c.
 std::vector<double> Border::to_theirs(int bands, const std::vector<double>& ours) const {
-  return weighted(multiplied(bands_, bands, ours, false), bands, 1.0);
+  return times(multiplied(bands_, bands, ours, false), weights_);
 }
 std::vector<double> Border::to_ours(int bands, const std::vector<double>& theirs) const {
-  return multiplied(bands_, bands, weighted(theirs, bands, -1.0), true);
+  return multiplied(bands_, bands, over(theirs, weights_), true);
 }
 std::vector<double> Border::dual_to_theirs(int bands, const std::vector<double>& ours) const {
-  return weighted(multiplied(bands_, bands, ours, false), bands, -1.0);
+  return over(multiplied(bands_, bands, ours, false), weights_);
 }
 std::vector<double> Border::dual_to_ours(int bands, const std::vector<double>& theirs) const {
-  return multiplied(bands_, bands, weighted(theirs, bands, 1.0), true);
+  return multiplied(bands_, bands, times(theirs, weights_), true);
 }
-
-std::vector<double> Border::weighted(std::vector<double> values, int bands, double power) const {
-  for (int l = 0; l < bands; ++l) {
-    for (int place = 0; place <= 2 * l; ++place) {
-      const int m = azimuthal_number(convention_, l, place);
-      const double weight = multiplier(convention_, l, m) / norm_of(convention_, l);
-      values[size_of(l) + static_cast<std::size_t>(place)] *= power > 0.0 ? weight : 1.0 / weight;
-    }
-  }
-  return values;
-}
-
 std::vector<double> Border::basis_to_ours(int bands, const std::vector<double>& theirs) const {
-  std::vector<double> result = theirs;
-  for (int l = 0; l < bands; ++l)
-    for (std::size_t i = size_of(l); i < size_of(l + 1); ++i) result[i] /= norm_of(convention_, l);
-  return multiplied(bands_, bands, result, true);
+  return multiplied(bands_, bands, times(theirs, basis_weights_), true);
 }
 
 std::vector<double> Border::rgb_to_ours(int bands, const std::vector<double>& theirs) const {
@@ -262,7 +227,7 @@ std::vector<double> Border::rgb_to_ours(int bands, const std::vector<double>& th
   for (std::size_t channel = 0; channel < 3; ++channel) {
     std::vector<double> one(count);
     for (std::size_t i = 0; i < count; ++i) {
-      one[i] = theirs[convention_.layout == PLUMBLINE_LAYOUT_PLANAR ? channel * count + i : 3 * i + channel];
+      one[i] = theirs[convention_.layout == sh::Layout::planar ? channel * count + i : 3 * i + channel];
     }
     one = to_ours(bands, one);
     for (std::size_t i = 0; i < count; ++i) result[3 * i + channel] = one[i];
@@ -271,29 +236,26 @@ std::vector<double> Border::rgb_to_ours(int bands, const std::vector<double>& th
 }
 
 std::vector<double> convention_basis(const plumbline_convention& convention, int bands, const Vec3d& direction) {
-  const std::vector<double> textbook = checks::textbook_basis(bands, polar_frame(convention, direction));
-  std::vector<double> result(textbook.size());
-  for (int l = 0; l < bands; ++l) {
-    for (int place = 0; place <= 2 * l; ++place) {
-      const int m = azimuthal_number(convention, l, place);
-      result[size_of(l) + static_cast<std::size_t>(place)] =
-          norm_of(convention, l) * sign_of(convention, m) * textbook[static_cast<std::size_t>(l * (l + 1) + m)];
-    }
-  }
+  sh::Convention known = sh_convention(convention);
+  known.quantity = sh::Quantity::radiance;
+  const std::vector<double> textbook = checks::textbook_basis(bands, sh::apply(known.axes, direction));
+  std::vector<double> result;
+  for (int l = 0; l < bands; ++l)
+    for (const std::size_t source : sources(known, l)) result.push_back(textbook[source] / weight_of(known, source));
   return result;
 }
 
 std::optional<plumbline_convention> convention_of_basis(const std::vector<Vec3d>& directions,
                                                         const std::vector<double>& values) {
-  for (const std::array<int32_t, 3>& axes : all_axes()) {
+  for (const sh::SignedAxes& axes : sh::all_signed_axes()) {
     for (const int32_t sign : {PLUMBLINE_SIGN_CONDON_SHORTLEY, PLUMBLINE_SIGN_POSITIVE}) {
-      for (int32_t norm = PLUMBLINE_NORM_ORTHONORMAL; norm <= PLUMBLINE_NORM_SEMI_SCHMIDT; ++norm) {
-        for (const int32_t order : {PLUMBLINE_INDEX_L_SQUARED, PLUMBLINE_INDEX_ZERO_FIRST}) {
+      for (int32_t norm = PLUMBLINE_NORM_ORTHONORMAL; norm <= PLUMBLINE_NORM_POLYNOMIAL; ++norm) {
+        for (int32_t order = PLUMBLINE_INDEX_L_SQUARED; order <= PLUMBLINE_INDEX_ZERO_FIRST; ++order) {
           plumbline_convention convention = own_convention();
           convention.index_order = order;
           convention.sign = sign;
           convention.norm = norm;
-          std::copy(axes.begin(), axes.end(), convention.axes);
+          for (std::size_t k = 0; k < 3; ++k) convention.axes[k] = (axes.axis.at(k) + 1) * axes.sign.at(k);
           if (fits(convention, directions, values)) return convention;
         }
       }

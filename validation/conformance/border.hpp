@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "prt/sh/convention.hpp"
 #include "reference/base/vector.hpp"
 #include "validation/conformance/plumbline_conformance.h"
 
@@ -12,28 +13,28 @@ namespace plumbline::conformance {
 
 /// CONVENTIONS.md#spherical-harmonics, as the interface writes it.
 [[nodiscard]] plumbline_convention own_convention();
-/// "index l(l+1)+m, Condon-Shortley, orthonormal, axes x y z, radiance, interleaved"; unknown parts say so.
+/// Its six parts in words; unknown ones say so.
 [[nodiscard]] std::string to_string(const plumbline_convention& convention);
 /// Empty when every part is one of the interface's values and the axes are a signed permutation or all 0; else what
 /// is wrong.
 [[nodiscard]] std::string fault_of(const plumbline_convention& convention);
 
-/// Converts by one matrix a band. Parts that are unknown are taken to be Plumbline's.
-///
-/// With y our functions and y' theirs, y' = S Q y: Q orthogonal (axes, signs, places), S the norm of each degree.
-/// Coefficients of one function f = sum c y = sum c' y' then obey c' = P S^-1 Q c, with P what they are
-/// multiplied by.
+/// The same as a value; unknown parts are Plumbline's. @throws InputError for one with a fault
+[[nodiscard]] sh::Convention sh_convention(const plumbline_convention& convention);
+
+/// Converts by one matrix a band: c' = W Q c, Q orthogonal (axes, places), W diagonal (sign, norm, quantity). Their
+/// functions are y' = W_r^-1 Q y, with W_r for radiance, and vectors that are multiplied with c go by W^-1 Q.
 class Border {
  public:
   /// For 1 ... max_bands bands. @throws InputError for a convention with a fault
   Border(const plumbline_convention& convention, int max_bands);
 
-  [[nodiscard]] const plumbline_convention& convention() const { return convention_; }
+  [[nodiscard]] const plumbline_convention& convention() const { return declared_; }
   /// Index order, sign, norm and axes are all declared.
   [[nodiscard]] bool knows_basis() const;
-  /// Also what coefficients are multiplied by.
+  /// Also what the coefficients are of.
   [[nodiscard]] bool knows_coefficients() const;
-  /// The largest number of bands that can be brought back: 3 where the multiplication loses band 3, else the argument.
+  /// The largest number of bands that can be brought back: 3 where the convention has or keeps no more.
   [[nodiscard]] int usable_bands(int bands) const;
 
   /// n^2 coefficients from ours to theirs and back; n^2 basis values from theirs to ours.
@@ -48,10 +49,12 @@ class Border {
 
  private:
   using Band = std::vector<double>;  // (2l + 1)^2, row-major: Q of one degree
-  [[nodiscard]] std::vector<double> weighted(std::vector<double> values, int bands, double power) const;
 
-  plumbline_convention convention_;
+  plumbline_convention declared_;
+  sh::Convention convention_;
   std::vector<Band> bands_;
+  std::vector<double> weights_;        // W
+  std::vector<double> basis_weights_;  // W_r
 };
 
 /// Values of the convention's functions at a direction, from the definition: n^2.

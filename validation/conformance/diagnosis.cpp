@@ -32,7 +32,8 @@ constexpr std::array kFactors{
     NamedFactor{2.0, "2"},            NamedFactor{kSqrt2, "sqrt(2)"},         NamedFactor{3.0, "3"},
     NamedFactor{4.0, "4"},            NamedFactor{1.5, "3/2"},                NamedFactor{1.25, "5/4"},
     NamedFactor{4.0 / 3.0, "4/3"},    NamedFactor{kPi / 2.0, "pi/2"},         NamedFactor{2.0 * kPi / 3.0, "2 pi/3"},
-    NamedFactor{kPi / 4.0, "pi/4"},   NamedFactor{8.0, "8"},                  NamedFactor{1.7320508075688772, "sqrt(3)"}};
+    NamedFactor{kPi / 4.0, "pi/4"},   NamedFactor{8.0, "8"},                  NamedFactor{1.7320508075688772, "sqrt(3)"},
+    NamedFactor{2.0 / kSqrtPi, "2/sqrt(pi)"}};
 
 bool is_near(double a, double b, double relative) {
   return std::abs(a - b) <= relative * std::max(std::abs(a), std::abs(b));
@@ -40,7 +41,7 @@ bool is_near(double a, double b, double relative) {
 
 /// What is usually behind one factor on everything.
 std::string usual_reason(double factor, double tolerance) {
-  const std::array<std::pair<double, const char*>, 8> reasons{{
+  const std::array<std::pair<double, const char*>, 9> reasons{{
       {1.0 / (4.0 * kPi), "a sum divided by the number of samples without 4 pi"},
       {4.0 * kPi, "4 pi applied twice"},
       {1.0 / kPi, "1/pi applied twice, or E/pi where E is asked"},
@@ -48,6 +49,7 @@ std::string usual_reason(double factor, double tolerance) {
       {std::sqrt(4.0 * kPi), "4 pi norm where orthonormal was declared"},
       {1.0 / std::sqrt(4.0 * kPi), "4 pi norm where orthonormal was declared"},
       {0.5, "a stray 1/2, or a hemisphere's integral for a sphere's"},
+      {2.0 / kSqrtPi, "orthonormal c_00 where 4 times the mean radiance is meant"},
       {-1.0, "negated"},
   }};
   for (const auto& [value, reason] : reasons)

@@ -13,7 +13,7 @@
  *    nothing else. Inputs must not be changed.
  *  - Directions are three doubles x, y, z of unit length, in a right-handed world with +Y up. Light directions point
  *    from the surface to the light.
- *  - Coefficients are in the convention you declare. Reconstruction is f(w) = sum_i c_i basis_i(w) for RADIANCE.
+ *  - Coefficients are in the convention you declare. For the quantity RADIANCE, f(w) = sum_i c_i basis_i(w).
  *    They travel in double whatever you compute in; say so in `precision`, by which bounds are scaled.
  *  - Return 0 when the outputs are the answer, any other value to refuse the request (outputs are then ignored).
  *    Refusing what the contract asks for is a finding. Non-finite input must be refused or must give a
@@ -41,8 +41,10 @@ extern "C" {
 /* Place of (l, m) among the coefficients; band l always starts at l*l. */
 enum plumbline_index_order {
   PLUMBLINE_INDEX_UNKNOWN = 0,
-  PLUMBLINE_INDEX_L_SQUARED = 1, /* l(l+1) + m: m = -l ... l */
-  PLUMBLINE_INDEX_ZERO_FIRST = 2 /* m = 0, 1, -1, 2, -2 ... within the band */
+  PLUMBLINE_INDEX_L_SQUARED = 1,  /* l(l+1) + m: m = -l ... l; band 1 is y, z, x */
+  PLUMBLINE_INDEX_DESCENDING = 2, /* m = l ... -l; band 1 is x, z, y */
+  PLUMBLINE_INDEX_XYZ = 3,        /* band 1 is x, y, z, the others m = -l ... l */
+  PLUMBLINE_INDEX_ZERO_FIRST = 4  /* m = 0, 1, -1, 2, -2 ...; band 1 is z, x, y */
 };
 
 /* Sign of the functions of odd |m|. Band 1 in x, y, z of the polar frame: */
@@ -57,19 +59,21 @@ enum plumbline_norm {
   PLUMBLINE_NORM_UNKNOWN = 0,
   PLUMBLINE_NORM_ORTHONORMAL = 1,  /* integral of y^2 = 1 */
   PLUMBLINE_NORM_FOUR_PI = 2,      /* integral of y^2 = 4 pi (N3D, geodesy) */
-  PLUMBLINE_NORM_SEMI_SCHMIDT = 3  /* integral of y^2 = 4 pi / (2l + 1) (SN3D, Racah) */
+  PLUMBLINE_NORM_SEMI_SCHMIDT = 3, /* integral of y^2 = 4 pi / (2l + 1) (SN3D, Racah) */
+  PLUMBLINE_NORM_UNNORMALIZED = 4, /* P_l|m| times cos or sin of |m| phi */
+  PLUMBLINE_NORM_POLYNOMIAL = 5    /* 1, y, z, x, xy, yz, 3z^2 - 1, xz, x^2 - y^2; at most 3 bands */
 };
 
-/* What the coefficients you give and take are of. A_l = pi, 2pi/3, pi/4, 0, -pi/24 ... (clamped cosine). */
-enum plumbline_premultiplication {
-  PLUMBLINE_PREMULTIPLIED_UNKNOWN = 0,
-  PLUMBLINE_PREMULTIPLIED_RADIANCE = 1,            /* c */
-  PLUMBLINE_PREMULTIPLIED_RADIANCE_OVER_PI = 2,    /* c / pi */
-  PLUMBLINE_PREMULTIPLIED_IRRADIANCE = 3,          /* A_l c */
-  PLUMBLINE_PREMULTIPLIED_IRRADIANCE_OVER_PI = 4,  /* A_l c / pi */
-  PLUMBLINE_PREMULTIPLIED_POLYNOMIAL = 5           /* at most 3 bands: A_l c / pi times the constant and the sign
-                                                      of the function, to go with the bare polynomials 1, y, z, x,
-                                                      xy, yz, 3z^2 - 1, xz, x^2 - y^2 */
+/* What the coefficients you give and take are of. A_l = pi, 2pi/3, pi/4, 0, -pi/24 ... (clamped cosine). From
+ * IRRADIANCE on only the first 3 bands are judged: A_3 = 0 cannot be undone. */
+enum plumbline_quantity {
+  PLUMBLINE_QUANTITY_UNKNOWN = 0,
+  PLUMBLINE_QUANTITY_RADIANCE = 1,                /* c */
+  PLUMBLINE_QUANTITY_RADIANCE_OVER_PI = 2,        /* c / pi */
+  PLUMBLINE_QUANTITY_RADIANCE_OVER_4PI = 3,       /* c / 4 pi */
+  PLUMBLINE_QUANTITY_IRRADIANCE = 4,              /* A_l c */
+  PLUMBLINE_QUANTITY_IRRADIANCE_OVER_PI = 5,      /* A_l c / pi */
+  PLUMBLINE_QUANTITY_IRRADIANCE_OVER_PI_TWICE = 6 /* A_l c / pi^2 */
 };
 
 /* How RGB coefficients lie in memory. */
@@ -80,14 +84,14 @@ enum plumbline_layout {
 };
 
 typedef struct plumbline_convention {
-  int32_t index_order;       /* enum plumbline_index_order */
-  int32_t sign;              /* enum plumbline_sign */
-  int32_t norm;              /* enum plumbline_norm */
-  int32_t axes[3];           /* your textbook x, y, z are these world axes: 1 = x, 2 = y, 3 = z, negative = reversed.
+  int32_t index_order; /* enum plumbline_index_order */
+  int32_t sign;        /* enum plumbline_sign */
+  int32_t norm;        /* enum plumbline_norm */
+  int32_t axes[3];     /* your textbook x, y, z are these world axes: 1 = x, 2 = y, 3 = z, negative = reversed.
                                 {1, 2, 3}: polar axis z, no swap. {3, 1, 2}: your z is the world's y (y polar).
                                 All 0: unknown */
-  int32_t premultiplication; /* enum plumbline_premultiplication */
-  int32_t layout;            /* enum plumbline_layout */
+  int32_t quantity; /* enum plumbline_quantity */
+  int32_t layout;   /* enum plumbline_layout */
 } plumbline_convention;
 
 /* ---------------------------------------------------------------- what else is declared */
@@ -176,7 +180,7 @@ typedef struct plumbline_implementation {
   int (*light_hemisphere)(int32_t bands, const double* up, double top, double bottom, double* out);
 
   /* Transfer vector of an unblocked point with this normal: exit radiance for unit albedo, so that
-   * relight(transfer, lighting) = E/pi. n^2 values. */
+   * sum_i transfer_i lighting_i = E/pi with lighting coefficients in your convention. n^2 values. */
   int (*transfer_unshadowed)(int32_t bands, const double* normal, double* out);
 
   /* transfer . lighting, one channel: one value. */
