@@ -253,7 +253,7 @@ std::vector<std::optional<double>> band_factors(const Evidence& e) {
       });
     };
     const Vectors expected = part(e.expected);
-    if (largest(expected) <= 10.0 * e.tolerance * scale) {
+    if (largest(expected) <= 2.0 * e.tolerance * scale) {
       result.emplace_back();
     } else {
       result.emplace_back(fitted_factor(expected, part(e.measured)));
@@ -308,9 +308,9 @@ Cause window_cause(const std::vector<std::optional<double>>& factors, double tol
     if (!factors[l]) continue;
     const auto ll = static_cast<double>(l);
     const double x = kPi * ll / n;
-    is_laplacian &= is_near(*factors[l], 1.0 / (1.0 + lambda * ll * ll * (ll + 1.0) * (ll + 1.0)), 10.0 * tolerance);
-    is_hann &= is_near(*factors[l], 0.5 * (1.0 + std::cos(x)), 10.0 * tolerance);
-    is_lanczos &= is_near(*factors[l], std::sin(x) / x, 10.0 * tolerance);
+    is_laplacian &= is_near(*factors[l], 1.0 / (1.0 + lambda * ll * ll * (ll + 1.0) * (ll + 1.0)), 5.0 * tolerance);
+    is_hann &= is_near(*factors[l], 0.5 * (1.0 + std::cos(x)), 5.0 * tolerance);
+    is_lanczos &= is_near(*factors[l], std::sin(x) / x, 5.0 * tolerance);
   }
   if (is_laplacian) return fmt::format("windowed: factors 1/(1 + {:.4g} l^2 (l + 1)^2)", lambda);
   if (is_hann) return "windowed: Hann factors";
@@ -323,7 +323,7 @@ bool agree(const std::vector<std::optional<double>>& factors, const BandCause& c
   for (std::size_t l = 0; l < factors.size(); ++l) {
     if (!factors[l]) continue;
     const double wanted = scale * cause.factor(static_cast<int>(l));
-    if (!(std::abs(*factors[l] - wanted) <= 10.0 * tolerance * std::max(std::abs(scale), std::abs(wanted))))
+    if (!(std::abs(*factors[l] - wanted) <= 5.0 * tolerance * std::max(std::abs(scale), std::abs(wanted))))
       return false;
   }
   return true;
