@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "prt/sh/basis.hpp"
+#include "prt/sh/exponential.hpp"
 #include "prt/sh/lighting.hpp"
+#include "prt/sh/logarithm.hpp"
 #include "prt/sh/product.hpp"
 #include "prt/sh/rotation.hpp"
 #include "prt/sh/zonal.hpp"
@@ -128,6 +130,14 @@ int rotate(std::int32_t bands, const double* matrix, const double* in, double* o
 int multiply(std::int32_t bands, const double* a, const double* b, double* out) {
   const std::size_t n = size_of(bands);
   return answered([&] { sh::multiply({a, n}, {b, n}, std::span<double>(out, n)); });
+}
+
+int exponential(std::int32_t bands, const double* in, double* out) {
+  return answered([&] { write(sh::exponential(read(in, size_of(bands))), out); });
+}
+
+int logarithm(std::int32_t bands, const double* in, double* out) {
+  return answered([&] { write(sh::logarithm(read(in, size_of(bands))).coefficients, out); });
 }
 
 int rotate_zonal(std::int32_t bands, const double* zonal, const double* axis, double* out) {
@@ -261,6 +271,8 @@ plumbline_implementation make() {
   result.lookup_lat_long = lookup_lat_long;
   result.rotate = rotate;
   result.multiply = multiply;
+  result.exponential = exponential;
+  result.logarithm = logarithm;
   result.rotate_zonal = rotate_zonal;
   result.irradiance = irradiance;
   result.light_directional = light_directional;

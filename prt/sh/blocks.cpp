@@ -1,10 +1,11 @@
-// One 128-bit, one 256-bit and one 512-bit set are enough: the kernels use nothing but +, * and loads.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4)
+// SSE4 would give what SSSE3 does: the kernels use nothing but +, *, comparisons and loads.
+#define HWY_DISABLED_TARGETS HWY_SSE4
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "prt/sh/product_blocks.cpp"
+#define HWY_TARGET_INCLUDE "prt/sh/blocks.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "prt/sh/exponential_kernel-inl.hpp"
 #include "prt/sh/product_kernel-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -54,6 +55,7 @@ HWY_AFTER_NAMESPACE();
 
 #include <string>
 
+#include "prt/sh/exponential.hpp"
 #include "prt/sh/product.hpp"
 #include "prt/sh/product_table.hpp"
 #include "reference/base/error.hpp"
@@ -62,6 +64,7 @@ namespace plumbline::sh {
 
 HWY_EXPORT(multiply_unrolled);
 HWY_EXPORT(square_unrolled);
+HWY_EXPORT(exponential_unrolled);
 
 namespace {
 
@@ -91,6 +94,20 @@ bool is_unrolled(int bands) {
   return bands >= 2 && bands <= kUnrolledBands;
 }
 
+int require_unrolled(int bands) {
+  if (!is_unrolled(bands)) {
+    throw InputError("sh::exponential_blocks: expected 2 to " + std::to_string(kUnrolledBands) +
+                     " bands, got " + std::to_string(bands));
+  }
+  return bands;
+}
+
+std::size_t exponential_of_any(int bands, std::span<const float> f, const LinearTable* table,
+                               std::span<float> out) {
+  const std::size_t blocks = block_count(bands, f.size(), f.size(), out.size());
+  return HWY_DYNAMIC_DISPATCH(exponential_unrolled)(bands, blocks, f.data(), table, out.data());
+}
+
 }  // namespace
 
 void multiply_blocks(int bands, std::span<const float> a, std::span<const float> b, std::span<float> out) {
@@ -103,6 +120,14 @@ void square_blocks(int bands, std::span<const float> a, std::span<float> out) {
   const std::size_t blocks = block_count(bands, a.size(), a.size(), out.size());
   if (!is_unrolled(bands)) return multiply_by_table(bands, blocks, a.data(), a.data(), out.data());
   HWY_DYNAMIC_DISPATCH(square_unrolled)(bands, blocks, a.data(), out.data());
+}
+
+std::size_t exponential_hybrid_blocks(int bands, std::span<const float> f, std::span<float> out) {
+  return exponential_of_any(bands, f, &linear_table(require_unrolled(bands)), out);
+}
+
+std::size_t exponential_blocks(int bands, std::span<const float> f, std::span<float> out) {
+  return exponential_of_any(require_unrolled(bands), f, nullptr, out);
 }
 
 }  // namespace plumbline::sh
