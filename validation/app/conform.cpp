@@ -32,7 +32,8 @@ void write_reports(const Options& options, report::Report report, const std::str
   if (!options.junit.empty()) write_output(options.junit, report::to_junit(report));
 }
 
-int finish(const Options& options, const report::Report& report, const std::string& what, const std::string& text) {
+int finish(const Options& options, const report::Report& report, const std::string& what,
+           const std::string& text) {
   write_reports(options, report, what);
   if (options.json != "-" && options.junit != "-" && options.html != "-") write_output("-", text);
   return report::verdict(report) == checks::Verdict::fail ? kCheckFailed : kSuccess;
@@ -54,14 +55,16 @@ int run_import(const Options& options) {
 int run_library(const Options& options) {
   const conformance::Verdict verdict =
       conformance::conform({options.library, options.bands, options.seconds, progress_bar("judging")});
-  return finish(options, conformance::to_report(verdict), quoted(options.library), conformance::to_text(verdict));
+  return finish(options, conformance::to_report(verdict), quoted(options.library),
+                conformance::to_text(verdict));
 }
 
 int run(const Options& options) {
   const int asked = (options.library.empty() ? 0 : 1) + (options.export_folder.empty() ? 0 : 1) +
                     (options.import_folder.empty() ? 0 : 1) + (options.is_faults ? 1 : 0);
   if (asked != 1) throw InputError("conform: expected one of LIBRARY, --export, --import and --faults");
-  require_destinations({{"--json", options.json, ""}, {"--html", options.html, ""}, {"--junit", options.junit, ""}});
+  require_destinations(
+      {{"--json", options.json, ""}, {"--html", options.html, ""}, {"--junit", options.junit, ""}});
   if (options.is_faults) return run_faults(options);
   if (!options.import_folder.empty()) return run_import(options);
   if (options.export_folder.empty()) return run_library(options);
@@ -76,12 +79,15 @@ int run(const Options& options) {
 void register_conform(CLI::App& app, Action& chosen) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("conform", "judges another implementation of spherical harmonics");
-  verb->add_option("LIBRARY", options->library,
-                   "a shared library that exports plumbline_conformance_entry (validation/conformance/README.md)");
+  verb->add_option(
+      "LIBRARY", options->library,
+      "a shared library that exports plumbline_conformance_entry (validation/conformance/README.md)");
   verb->add_option("--export", options->export_folder, "write questions for an engine that cannot be linked")
       ->type_name("DIR");
-  verb->add_option("--import", options->import_folder, "judge the answers in a folder of --export")->type_name("DIR");
-  verb->add_flag("--faults", options->is_faults, "judge the catalogue of seeded faults: which check rejects which");
+  verb->add_option("--import", options->import_folder, "judge the answers in a folder of --export")
+      ->type_name("DIR");
+  verb->add_flag("--faults", options->is_faults,
+                 "judge the catalogue of seeded faults: which check rejects which");
   add_whole_number(*verb, "--bands", options->bands, {1, 20}, "number of bands to judge at (default 6)");
   add_positive(*verb, "--seconds", options->seconds, "time limit for each check (default 20)");
   add_json(*verb, options->json, "findings and table");

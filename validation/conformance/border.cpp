@@ -50,7 +50,8 @@ std::vector<std::vector<double>> turned_bands(const sh::Convention& convention, 
   std::vector<std::vector<double>> result;
   for (int l = 0; l < max_bands; ++l) result.emplace_back(size_of(2 * l + 1), 0.0);
   for (const sh::SphereNode& node : sh::sphere_quadrature(max_bands)) {
-    const std::vector<double> theirs = checks::textbook_basis(max_bands, sh::apply(convention.axes, node.direction));
+    const std::vector<double> theirs =
+        checks::textbook_basis(max_bands, sh::apply(convention.axes, node.direction));
     const std::vector<double> ours = checks::textbook_basis(max_bands, node.direction);
     for (int l = 0; l < max_bands; ++l) {
       const std::vector<std::size_t> source = sources(convention, l);
@@ -112,12 +113,8 @@ bool fits(const plumbline_convention& convention, const std::vector<Vec3d>& dire
 }  // namespace
 
 plumbline_convention own_convention() {
-  return {PLUMBLINE_INDEX_L_SQUARED,
-          PLUMBLINE_SIGN_CONDON_SHORTLEY,
-          PLUMBLINE_NORM_ORTHONORMAL,
-          {1, 2, 3},
-          PLUMBLINE_QUANTITY_RADIANCE,
-          PLUMBLINE_LAYOUT_INTERLEAVED};
+  return {PLUMBLINE_INDEX_L_SQUARED,   PLUMBLINE_SIGN_CONDON_SHORTLEY, PLUMBLINE_NORM_ORTHONORMAL, {1, 2, 3},
+          PLUMBLINE_QUANTITY_RADIANCE, PLUMBLINE_LAYOUT_INTERLEAVED};
 }
 
 std::string to_string(const plumbline_convention& c) {
@@ -136,31 +133,35 @@ std::string to_string(const plumbline_convention& c) {
 
 std::string fault_of(const plumbline_convention& c) {
   const auto check = [](const char* name, int32_t value, int32_t last) {
-    return value >= 0 && value <= last ? std::string()
-                                       : fmt::format("convention.{} = {}, expected 0 to {}", name, value, last);
+    return value >= 0 && value <= last
+               ? std::string()
+               : fmt::format("convention.{} = {}, expected 0 to {}", name, value, last);
   };
-  for (const std::string& fault : {check("index_order", c.index_order, PLUMBLINE_INDEX_ZERO_FIRST),
-                                   check("sign", c.sign, PLUMBLINE_SIGN_POSITIVE),
-                                   check("norm", c.norm, PLUMBLINE_NORM_POLYNOMIAL),
-                                   check("quantity", c.quantity, PLUMBLINE_QUANTITY_IRRADIANCE_OVER_PI_TWICE),
-                                   check("layout", c.layout, PLUMBLINE_LAYOUT_PLANAR)}) {
+  for (const std::string& fault :
+       {check("index_order", c.index_order, PLUMBLINE_INDEX_ZERO_FIRST),
+        check("sign", c.sign, PLUMBLINE_SIGN_POSITIVE), check("norm", c.norm, PLUMBLINE_NORM_POLYNOMIAL),
+        check("quantity", c.quantity, PLUMBLINE_QUANTITY_IRRADIANCE_OVER_PI_TWICE),
+        check("layout", c.layout, PLUMBLINE_LAYOUT_PLANAR)}) {
     if (!fault.empty()) return fault;
   }
   if (is_permutation(c.axes)) return {};
-  return fmt::format("convention.axes = {{{}, {}, {}}}, expected 1, 2, 3 in any order and sign, or all 0", c.axes[0],
-                     c.axes[1], c.axes[2]);
+  return fmt::format("convention.axes = {{{}, {}, {}}}, expected 1, 2, 3 in any order and sign, or all 0",
+                     c.axes[0], c.axes[1], c.axes[2]);
 }
 
 sh::Convention sh_convention(const plumbline_convention& c) {
   constexpr std::array kArrangements{sh::Arrangement::ascending, sh::Arrangement::ascending,
                                      sh::Arrangement::descending, sh::Arrangement::xyz,
                                      sh::Arrangement::zero_first};
-  constexpr std::array kNorms{sh::Normalization::orthonormal, sh::Normalization::orthonormal,
-                              sh::Normalization::four_pi,     sh::Normalization::schmidt,
+  constexpr std::array kNorms{sh::Normalization::orthonormal,  sh::Normalization::orthonormal,
+                              sh::Normalization::four_pi,      sh::Normalization::schmidt,
                               sh::Normalization::unnormalized, sh::Normalization::polynomial};
-  constexpr std::array kQuantities{sh::Quantity::radiance,          sh::Quantity::radiance,
-                                   sh::Quantity::radiance_over_pi,  sh::Quantity::radiance_over_4pi,
-                                   sh::Quantity::irradiance,        sh::Quantity::irradiance_over_pi,
+  constexpr std::array kQuantities{sh::Quantity::radiance,
+                                   sh::Quantity::radiance,
+                                   sh::Quantity::radiance_over_pi,
+                                   sh::Quantity::radiance_over_4pi,
+                                   sh::Quantity::irradiance,
+                                   sh::Quantity::irradiance_over_pi,
                                    sh::Quantity::irradiance_over_pi_twice};
   if (const std::string fault = fault_of(c); !fault.empty()) throw InputError(fault);
   sh::Convention result;
@@ -180,11 +181,13 @@ Border::Border(const plumbline_convention& convention, int max_bands)
     : declared_(convention), convention_(sh_convention(convention)) {
   const int bands = usable_bands(max_bands);
   for (int l = 0; l < bands; ++l)
-    for (const std::size_t source : sources(convention_, l)) weights_.push_back(weight_of(convention_, source));
+    for (const std::size_t source : sources(convention_, l))
+      weights_.push_back(weight_of(convention_, source));
   sh::Convention radiance = convention_;
   radiance.quantity = sh::Quantity::radiance;
   for (int l = 0; l < bands; ++l)
-    for (const std::size_t source : sources(radiance, l)) basis_weights_.push_back(weight_of(radiance, source));
+    for (const std::size_t source : sources(radiance, l))
+      basis_weights_.push_back(weight_of(radiance, source));
   if (convention_.axes == sh::SignedAxes{}) {
     for (int l = 0; l < bands; ++l) bands_.push_back(plain_band(convention_, l));
   } else {
@@ -201,7 +204,8 @@ bool Border::knows_coefficients() const {
 }
 
 int Border::usable_bands(int bands) const {
-  const bool is_limited = declared_.quantity >= PLUMBLINE_QUANTITY_IRRADIANCE || declared_.norm == PLUMBLINE_NORM_POLYNOMIAL;
+  const bool is_limited =
+      declared_.quantity >= PLUMBLINE_QUANTITY_IRRADIANCE || declared_.norm == PLUMBLINE_NORM_POLYNOMIAL;
   return is_limited ? std::min(bands, 3) : bands;
 }
 
@@ -235,13 +239,15 @@ std::vector<double> Border::rgb_to_ours(int bands, const std::vector<double>& th
   return result;
 }
 
-std::vector<double> convention_basis(const plumbline_convention& convention, int bands, const Vec3d& direction) {
+std::vector<double> convention_basis(const plumbline_convention& convention, int bands,
+                                     const Vec3d& direction) {
   sh::Convention known = sh_convention(convention);
   known.quantity = sh::Quantity::radiance;
   const std::vector<double> textbook = checks::textbook_basis(bands, sh::apply(known.axes, direction));
   std::vector<double> result;
   for (int l = 0; l < bands; ++l)
-    for (const std::size_t source : sources(known, l)) result.push_back(textbook[source] / weight_of(known, source));
+    for (const std::size_t source : sources(known, l))
+      result.push_back(textbook[source] / weight_of(known, source));
   return result;
 }
 

@@ -36,7 +36,8 @@ Judged skipped(const Check& check, const std::string& reason) {
 /// The declared convention, its unknown parts taken from the basis functions.
 plumbline_convention completed_convention(const Implementation& implementation) {
   plumbline_convention declared = implementation.convention;
-  if (Border(declared, 1).knows_basis() || implementation.evaluate_basis == nullptr || implementation.max_bands < 3)
+  if (Border(declared, 1).knows_basis() || implementation.evaluate_basis == nullptr ||
+      implementation.max_bands < 3)
     return declared;
   plumbline_convention plain = own_convention();
   Subject subject(implementation, plain);
@@ -86,9 +87,11 @@ std::vector<Judged> run_check(const Check& check, const Implementation& implemen
     const bool is_known = subject.border().knows_basis() &&
                           (convention.quantity != 0 || std::string(check.operation) == "evaluate basis");
     if (check.needs_convention && !is_known)
-      return {skipped(check, "needs the convention, which was not declared and could not be told from the basis: " +
-                                 to_string(convention))};
-    const int usable = subject.border().usable_bands(std::clamp(bands, 1, std::max(1, implementation.max_bands)));
+      return {skipped(check,
+                      "needs the convention, which was not declared and could not be told from the basis: " +
+                          to_string(convention))};
+    const int usable =
+        subject.border().usable_bands(std::clamp(bands, 1, std::max(1, implementation.max_bands)));
     try {
       results = check.run({subject, usable, ruler});
     } catch (const Refusal& refusal) {
@@ -125,7 +128,8 @@ double Pairs::scale() const {
   return result;
 }
 
-Judged judged(const Context& context, const Label& label, double error, double bound, const std::string& cause) {
+Judged judged(const Context& context, const Label& label, double error, double bound,
+              const std::string& cause) {
   Judged result;
   result.bands = label.bands;
   result.finding.family = label.operation;

@@ -55,8 +55,8 @@ struct Check {
 
 /// Runs one check. A refusal, an exception, a misuse of arrays and a convention that is needed but unknown (then
 /// taken from the basis functions where there are any) become findings.
-[[nodiscard]] std::vector<Judged> run_check(const Check& check, const Implementation& implementation, int bands,
-                                            const Ruler& ruler = right_ruler());
+[[nodiscard]] std::vector<Judged> run_check(const Check& check, const Implementation& implementation,
+                                            int bands, const Ruler& ruler = right_ruler());
 
 // ---------------------------------------------------------------- what the checks share
 
@@ -91,11 +91,11 @@ struct Label {
 [[nodiscard]] Judged judged(const Context& context, const Label& label, double error, double bound,
                             const std::string& cause);
 /// Vectors of n^2 coefficients; on failure the cause comes from diagnose() with this tolerance.
-[[nodiscard]] Judged judged_coefficients(const Context& context, const Label& label, const Pairs& pairs, double bound,
-                                         double tolerance);
+[[nodiscard]] Judged judged_coefficients(const Context& context, const Label& label, const Pairs& pairs,
+                                         double bound, double tolerance);
 /// Single values; the cause comes from diagnose_values().
-[[nodiscard]] Judged judged_values(const Context& context, const Label& label, const Pairs& pairs, double bound,
-                                   double tolerance);
+[[nodiscard]] Judged judged_values(const Context& context, const Label& label, const Pairs& pairs,
+                                   double bound, double tolerance);
 
 /// What rounding may do to values of n bands: 4 n^2 roundings of the largest value sqrt((2n - 1)/4 pi). n steps of a
 /// recurrence with up to 3 roundings each, and the rounding of the direction, all amplified by the functions' slope,

@@ -87,7 +87,8 @@ std::string fate_of(int status, bool is_late, double seconds) {
 
 ChildResult run_in_child(const std::function<std::string()>& work, double seconds) {
   int pipe[2];
-  if (::pipe2(pipe, O_CLOEXEC) != 0) throw DeviceError(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
+  if (::pipe2(pipe, O_CLOEXEC) != 0)
+    throw DeviceError(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
   const pid_t child = ::fork();
   if (child < 0) throw DeviceError(fmt::format("cannot start a process: {}", std::strerror(errno)));
   if (child == 0) {
@@ -96,7 +97,8 @@ ChildResult run_in_child(const std::function<std::string()>& work, double second
     be_the_child(work, pipe[1]);
   }
   ::close(pipe[1]);
-  const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  const auto end =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   std::string received;
   const bool is_late = !read_until(pipe[0], end, received);
   ::close(pipe[0]);

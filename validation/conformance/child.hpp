@@ -9,8 +9,8 @@ namespace plumbline::conformance {
 struct ChildResult {
   bool is_complete = false;  // the work returned and its text arrived whole
   std::string text;          // what it returned
-  std::string fate;          // else what happened: "crashes (SIGSEGV)", "hangs: no answer within 10 s", "ends the
-                             // process with exit code 0", ...
+  std::string fate;  // else what happened: "crashes (SIGSEGV)", "hangs: no answer within 10 s", "ends the
+                     // process with exit code 0", ...
 };
 
 /// Forks; the child runs `work` with standard output and error thrown away, no core file and limited memory, and sends

@@ -31,10 +31,18 @@ json unpacked(const std::string& text) {
 
 json to_json(const Judged& judged) {
   const checks::Finding& f = judged.finding;
-  return {{"family", f.family},     {"name", f.name},     {"measured", f.measured},
-          {"bound", f.bound},       {"unit", f.unit},     {"verdict", static_cast<int>(f.verdict)},
-          {"source", f.source},     {"detail", f.detail}, {"seed", f.seed},
-          {"seconds", f.seconds},   {"bands", judged.bands}, {"cause", judged.cause},
+  return {{"family", f.family},
+          {"name", f.name},
+          {"measured", f.measured},
+          {"bound", f.bound},
+          {"unit", f.unit},
+          {"verdict", static_cast<int>(f.verdict)},
+          {"source", f.source},
+          {"detail", f.detail},
+          {"seed", f.seed},
+          {"seconds", f.seconds},
+          {"bands", judged.bands},
+          {"cause", judged.cause},
           {"uncertainty", f.uncertainty}};
 }
 
@@ -98,7 +106,8 @@ std::string time(const std::string& library, const std::string& operation, int b
   const plumbline_implementation& theirs = loaded(library);
   const int usable = std::min({bands, theirs.max_bands, Border(theirs.convention, 1).usable_bands(bands)});
   json answer = json::array();
-  for (const auto& ns : {nanoseconds(theirs, operation, usable), nanoseconds(plumbline_sh(), operation, usable)})
+  for (const auto& ns :
+       {nanoseconds(theirs, operation, usable), nanoseconds(plumbline_sh(), operation, usable)})
     answer.push_back(ns ? json(*ns) : json());
   return packed(answer);
 }
@@ -184,13 +193,15 @@ Verdict conform(const Request& request) {
                verdict.not_offered.end()) {
       verdict.not_offered.push_back(operation);
     }
-    if (request.progress) request.progress(static_cast<double>(i + 1) / static_cast<double>(applies.size() + 4));
+    if (request.progress)
+      request.progress(static_cast<double>(i + 1) / static_cast<double>(applies.size() + 4));
   }
   std::erase_if(verdict.not_offered, [&](const std::string& operation) {
     return std::find(offered.begin(), offered.end(), operation) != offered.end();
   });
   if (!applies.empty() && offered.empty())
-    verdict.lines.push_back({failure("library", "functions", "offers no function: nothing to judge"), {}, {}});
+    verdict.lines.push_back(
+        {failure("library", "functions", "offers no function: nothing to judge"), {}, {}});
   append_times(verdict, request);
   if (request.progress) request.progress(1.0);
   return verdict;

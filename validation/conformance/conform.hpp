@@ -22,8 +22,8 @@ struct Request {
 /// A finding with the times of the operation it is about.
 struct Line {
   Judged judged;
-  std::optional<double> nanoseconds;       // theirs
-  std::optional<double> our_nanoseconds;   // ours
+  std::optional<double> nanoseconds;      // theirs
+  std::optional<double> our_nanoseconds;  // ours
 };
 struct Verdict {
   std::string name;        // what the implementation calls itself; empty when it could not be asked

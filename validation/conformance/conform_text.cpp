@@ -76,8 +76,8 @@ std::string list(const std::vector<std::string>& words) {
 }
 
 const std::vector<std::string>& columns() {
-  static const std::vector<std::string> kColumns{"operation", "check", "bands", "error", "bound", "verdict",
-                                                 "ns per call"};
+  static const std::vector<std::string> kColumns{"operation", "check",   "bands",      "error",
+                                                 "bound",     "verdict", "ns per call"};
   return kColumns;
 }
 
@@ -154,24 +154,29 @@ std::string to_text(const Verdict& verdict) {
   for (const Line& line : verdict.lines) {
     const checks::Finding& f = line.judged.finding;
     if (report::verdict(f) == checks::Verdict::pass) continue;
-    text += fmt::format("\n{}: {}: {}\n  {}\n", checks::to_string(report::verdict(f)), f.family, f.name, f.detail);
+    text += fmt::format("\n{}: {}: {}\n  {}\n", checks::to_string(report::verdict(f)), f.family, f.name,
+                        f.detail);
   }
-  if (!verdict.not_offered.empty()) text += fmt::format("\nnot offered, not judged: {}\n", list(verdict.not_offered));
+  if (!verdict.not_offered.empty())
+    text += fmt::format("\nnot offered, not judged: {}\n", list(verdict.not_offered));
   const Counts counts = counted(verdict);
-  return text + fmt::format("\n{} checks: {} passed, {} failed, {} inconclusive\n", verdict.lines.size(), counts.passed,
-                            counts.failed, counts.undecided);
+  return text + fmt::format("\n{} checks: {} passed, {} failed, {} inconclusive\n", verdict.lines.size(),
+                            counts.passed, counts.failed, counts.undecided);
 }
 
 report::Report to_report(const Verdict& verdict) {
   report::Report report;
   report.title = fmt::format("Conformance of {}", verdict.name.empty() ? "a library" : verdict.name);
-  report.summary = "A spherical-harmonics implementation held against definitions, closed forms and exact quadrature.";
+  report.summary =
+      "A spherical-harmonics implementation held against definitions, closed forms and exact quadrature.";
   const Counts counts = counted(verdict);
-  report.headlines = {{"checks passed", fmt::format("{} of {}", counts.passed, verdict.lines.size()), "all is good"}};
+  report.headlines = {
+      {"checks passed", fmt::format("{} of {}", counts.passed, verdict.lines.size()), "all is good"}};
   if (!verdict.convention.empty()) report.settings.emplace_back("declared convention", verdict.convention);
   if (!verdict.not_offered.empty())
     report.settings.emplace_back("not offered, not judged", list(verdict.not_offered));
-  report::Table table{"Operations", "Times are of one call, beside our own library's in the same process.", columns(), {}};
+  report::Table table{
+      "Operations", "Times are of one call, beside our own library's in the same process.", columns(), {}};
   for (const Line& line : verdict.lines) {
     report.findings.push_back(line.judged.finding);
     table.rows.push_back(cells(line));
@@ -183,7 +188,8 @@ report::Report to_report(const Verdict& verdict) {
 std::string to_text(const std::vector<Kill>& kills) {
   std::vector<std::vector<std::string>> rows{{"fault", "outcome", "checks that reject it", "cause given"}};
   for (const Kill& kill : kills)
-    rows.push_back({kill.fault->name, outcome(kill), std::to_string(kill.failures.size()), named_cause(kill)});
+    rows.push_back(
+        {kill.fault->name, outcome(kill), std::to_string(kill.failures.size()), named_cause(kill)});
   std::string text = aligned(rows);
   const Matrix matrix = matrix_of(kills);
   text += "\nchecks, by the faults they reject:\n";
@@ -194,22 +200,26 @@ std::string to_text(const std::vector<Kill>& kills) {
     text += fmt::format("  {}:{}\n", check, names);
   }
   text += "\nlight transport, judged with scenes and not here:\n";
-  for (const UnjudgedFault& fault : transport_faults()) text += fmt::format("  {}: {}\n", fault.name, fault.wrong);
+  for (const UnjudgedFault& fault : transport_faults())
+    text += fmt::format("  {}: {}\n", fault.name, fault.wrong);
   const Score score = score_of(kills);
-  return text + fmt::format("\n{} faults x {} checks: {} caught, {} with the expected check and cause\n", kills.size(),
-                            matrix.checks.size(), score.caught, score.named);
+  return text + fmt::format("\n{} faults x {} checks: {} caught, {} with the expected check and cause\n",
+                            kills.size(), matrix.checks.size(), score.caught, score.named);
 }
 
 report::Report to_report(const std::vector<Kill>& kills) {
   report::Report report;
   report.title = "Seeded faults";
   report.summary =
-      "Known mistakes of public code, published listings and issue reports, each behind the conformance interface.";
+      "Known mistakes of public code, published listings and issue reports, each behind the conformance "
+      "interface.";
   const Score score = score_of(kills);
   report.headlines = {{"faults caught", fmt::format("{} of {}", score.caught, kills.size()), "all is good"},
                       {"cause named", fmt::format("{} of {}", score.named, kills.size()), "all is good"}};
-  report::Table causes{"Faults and the causes given", "The cause is derived from the answers alone.",
-                       {"fault", "seen in", "what is wrong", "outcome", "cause given"}, {}};
+  report::Table causes{"Faults and the causes given",
+                       "The cause is derived from the answers alone.",
+                       {"fault", "seen in", "what is wrong", "outcome", "cause given"},
+                       {}};
   const Matrix matrix = matrix_of(kills);
   report::Table table{"Kill matrix", "A dot where a check rejects a fault.", {"check"}, {}};
   for (const Kill& kill : kills) {

@@ -26,14 +26,25 @@ struct NamedFactor {
 
 constexpr double kSqrtPi = 1.7724538509055160273;
 constexpr double kSqrt2 = 1.4142135623730950488;
-constexpr std::array kFactors{
-    NamedFactor{kPi, "pi"},           NamedFactor{4.0 * kPi, "4 pi"},         NamedFactor{2.0 * kPi, "2 pi"},
-    NamedFactor{kPi * kPi, "pi^2"},   NamedFactor{kSqrtPi, "sqrt(pi)"},       NamedFactor{2.0 * kSqrtPi, "sqrt(4 pi)"},
-    NamedFactor{2.0, "2"},            NamedFactor{kSqrt2, "sqrt(2)"},         NamedFactor{3.0, "3"},
-    NamedFactor{4.0, "4"},            NamedFactor{1.5, "3/2"},                NamedFactor{1.25, "5/4"},
-    NamedFactor{4.0 / 3.0, "4/3"},    NamedFactor{kPi / 2.0, "pi/2"},         NamedFactor{2.0 * kPi / 3.0, "2 pi/3"},
-    NamedFactor{kPi / 4.0, "pi/4"},   NamedFactor{8.0, "8"},                  NamedFactor{1.7320508075688772, "sqrt(3)"},
-    NamedFactor{2.0 / kSqrtPi, "2/sqrt(pi)"}};
+constexpr std::array kFactors{NamedFactor{kPi, "pi"},
+                              NamedFactor{4.0 * kPi, "4 pi"},
+                              NamedFactor{2.0 * kPi, "2 pi"},
+                              NamedFactor{kPi * kPi, "pi^2"},
+                              NamedFactor{kSqrtPi, "sqrt(pi)"},
+                              NamedFactor{2.0 * kSqrtPi, "sqrt(4 pi)"},
+                              NamedFactor{2.0, "2"},
+                              NamedFactor{kSqrt2, "sqrt(2)"},
+                              NamedFactor{3.0, "3"},
+                              NamedFactor{4.0, "4"},
+                              NamedFactor{1.5, "3/2"},
+                              NamedFactor{1.25, "5/4"},
+                              NamedFactor{4.0 / 3.0, "4/3"},
+                              NamedFactor{kPi / 2.0, "pi/2"},
+                              NamedFactor{2.0 * kPi / 3.0, "2 pi/3"},
+                              NamedFactor{kPi / 4.0, "pi/4"},
+                              NamedFactor{8.0, "8"},
+                              NamedFactor{1.7320508075688772, "sqrt(3)"},
+                              NamedFactor{2.0 / kSqrtPi, "2/sqrt(pi)"}};
 
 bool is_near(double a, double b, double relative) {
   return std::abs(a - b) <= relative * std::max(std::abs(a), std::abs(b));
@@ -186,7 +197,10 @@ std::vector<NamedMap> sign_and_order_maps() {
       {signs([](int l, int) { return l > 0; }), "all bands above 0 are negated"},
       {signs([](int l, int) { return l == 2; }), "band 2 is negated"},
       {reordered([](int, int m) { return -m; }), "m and -m are exchanged"},
-      {reordered([](int l, int m) { return l != 1 ? m : m == -1 ? 1 : m == 0 ? -1 : 0; }),
+      {reordered([](int l, int m) { return l != 1    ? m
+                                           : m == -1 ? 1
+                                           : m == 0  ? -1
+                                                     : 0; }),
        "band 1 is in the order x, y, z instead of y, z, x"},
       {reordered([](int l, int m) {
          const int place = m + l;
@@ -202,15 +216,16 @@ std::string axis_name(int axis) {
 }
 
 std::string axes_cause(const std::array<int32_t, 3>& a) {
-  const std::string list = fmt::format("x, y, z are read as {}, {}, {}", axis_name(a[0]), axis_name(a[1]),
-                                       axis_name(a[2]));
+  const std::string list =
+      fmt::format("x, y, z are read as {}, {}, {}", axis_name(a[0]), axis_name(a[1]), axis_name(a[2]));
   int parity = a[0] * a[1] * a[2] > 0 ? 1 : -1;
   const std::array<int, 3> p{std::abs(a[0]), std::abs(a[1]), std::abs(a[2])};
   const bool is_even = (p[0] % 3 + 1) == p[1] && (p[1] % 3 + 1) == p[2];
   if (!is_even) parity = -parity;
   const bool is_swap = p != std::array<int, 3>{1, 2, 3};
-  return fmt::format("{}: {}", is_swap ? (parity > 0 ? "axes are swapped" : "axes are swapped and mirrored")
-                                       : (parity > 0 ? "turned by 180 degrees" : "an axis is mirrored"),
+  return fmt::format("{}: {}",
+                     is_swap ? (parity > 0 ? "axes are swapped" : "axes are swapped and mirrored")
+                             : (parity > 0 ? "turned by 180 degrees" : "an axis is mirrored"),
                      list);
 }
 
@@ -281,14 +296,17 @@ std::vector<BandCause> band_causes() {
   return {
       {[cosine](int l) { return cosine(l) / kPi; },
        "coefficients are those of irradiance / pi: the clamped cosine (1, 2/3, 1/4) is already in them"},
-      {cosine, "coefficients are those of irradiance: the clamped cosine (pi, 2 pi/3, pi/4) is already in them"},
+      {cosine,
+       "coefficients are those of irradiance: the clamped cosine (pi, 2 pi/3, pi/4) is already in them"},
       {[cosine](int l) { return kPi / cosine(l); },
        "coefficients are those of radiance times pi: the clamped cosine's factors (1, 2/3, 1/4) are missing"},
-      {[cosine](int l) { return 1.0 / cosine(l); }, "the clamped cosine's factors (pi, 2 pi/3, pi/4) are missing"},
+      {[cosine](int l) { return 1.0 / cosine(l); },
+       "the clamped cosine's factors (pi, 2 pi/3, pi/4) are missing"},
       {root, "sqrt(4 pi/(2l + 1)) is applied once too often"},
       {[root](int l) { return 1.0 / root(l); },
        "sqrt(4 pi/(2l + 1)) is missing: the zonal coefficient c_l used for the factor A_l"},
-      {[](int l) { return std::sqrt(2.0 * l + 1.0); }, "the norm lacks sqrt(2l + 1) (semi-Schmidt, N3D mixed up)"},
+      {[](int l) { return std::sqrt(2.0 * l + 1.0); },
+       "the norm lacks sqrt(2l + 1) (semi-Schmidt, N3D mixed up)"},
       {[](int l) { return 1.0 / std::sqrt(2.0 * l + 1.0); },
        "the norm has one sqrt(2l + 1) too few (semi-Schmidt where orthonormal was declared)"},
       {[](int l) { return 2.0 * l + 1.0; }, "the factor 2l + 1 is applied once too often"},
@@ -298,7 +316,8 @@ std::vector<BandCause> band_causes() {
 }
 
 Cause window_cause(const std::vector<std::optional<double>>& factors, double tolerance) {
-  if (factors.size() < 3 || !factors[0] || !factors[1] || !is_near(*factors[0], 1.0, tolerance)) return std::nullopt;
+  if (factors.size() < 3 || !factors[0] || !factors[1] || !is_near(*factors[0], 1.0, tolerance))
+    return std::nullopt;
   const double lambda = (1.0 / *factors[1] - 1.0) / 4.0;
   const auto n = static_cast<double>(factors.size());
   bool is_laplacian = lambda > 0.0;
@@ -308,7 +327,8 @@ Cause window_cause(const std::vector<std::optional<double>>& factors, double tol
     if (!factors[l]) continue;
     const auto ll = static_cast<double>(l);
     const double x = kPi * ll / n;
-    is_laplacian &= is_near(*factors[l], 1.0 / (1.0 + lambda * ll * ll * (ll + 1.0) * (ll + 1.0)), 5.0 * tolerance);
+    is_laplacian &=
+        is_near(*factors[l], 1.0 / (1.0 + lambda * ll * ll * (ll + 1.0) * (ll + 1.0)), 5.0 * tolerance);
     is_hann &= is_near(*factors[l], 0.5 * (1.0 + std::cos(x)), 5.0 * tolerance);
     is_lanczos &= is_near(*factors[l], std::sin(x) / x, 5.0 * tolerance);
   }
@@ -333,8 +353,9 @@ std::string list_of_bands(const std::vector<std::optional<double>>& factors, dou
   std::vector<std::string> parts;
   for (std::size_t l = 0; l < factors.size(); ++l) {
     if (!factors[l] || is_near(*factors[l], 1.0, tolerance)) continue;
-    parts.push_back(std::abs(*factors[l]) <= tolerance ? fmt::format("band {} is missing", l)
-                                                       : fmt::format("band {} is {}", l, in_words(*factors[l])));
+    parts.push_back(std::abs(*factors[l]) <= tolerance
+                        ? fmt::format("band {} is missing", l)
+                        : fmt::format("band {} is {}", l, in_words(*factors[l])));
   }
   return fmt::format("{}", fmt::join(parts, "; "));
 }
@@ -405,7 +426,8 @@ Cause by_coefficients(const Evidence& e) {
   }
   if (wrong == 0) return "a small error spread over the values";
   if (wrong > std::max<std::size_t>(4, count / 2)) return std::nullopt;
-  return fmt::format("{}{}", fmt::join(parts, "; "), wrong > 4 ? fmt::format("; and {} more", wrong - 4) : "");
+  return fmt::format("{}{}", fmt::join(parts, "; "),
+                     wrong > 4 ? fmt::format("; and {} more", wrong - 4) : "");
 }
 
 std::string worst_place(const Evidence& e) {
@@ -416,7 +438,8 @@ std::string worst_place(const Evidence& e) {
       const double error = std::abs(e.expected[k][i] - e.measured[k][i]);
       if (error <= worst) continue;
       worst = error;
-      text = fmt::format("largest error at {}: {:.6g} for {:.6g}", place_name(i), e.measured[k][i], e.expected[k][i]);
+      text = fmt::format("largest error at {}: {:.6g} for {:.6g}", place_name(i), e.measured[k][i],
+                         e.expected[k][i]);
     }
   }
   return text;
@@ -468,7 +491,8 @@ std::string diagnose_values(const std::vector<double>& expected, const std::vect
   for (const double v : expected) e.expected.push_back({v});
   for (const double v : measured) e.measured.push_back({v});
   for (std::size_t i = 0; i < measured.size(); ++i)
-    if (!std::isfinite(measured[i])) return fmt::format("a value is {} where {:.6g} is right", measured[i], expected[i]);
+    if (!std::isfinite(measured[i]))
+      return fmt::format("a value is {} where {:.6g} is right", measured[i], expected[i]);
   if (const Cause cause = all_zero(e)) return *cause;
   if (const Cause cause = one_factor(e)) return *cause;
   std::size_t worst = 0;

@@ -11,7 +11,8 @@ struct Evidence {
   int bands = 0;
   std::vector<std::vector<double>> expected;
   std::vector<std::vector<double>> measured;
-  double tolerance = 1e-5;  // relative to the largest expected value; what a cause must explain the numbers to
+  double tolerance =
+      1e-5;  // relative to the largest expected value; what a cause must explain the numbers to
 };
 
 /// The simplest cause that explains all vectors, tried in this order: values that are no numbers; one factor; signs
@@ -23,7 +24,7 @@ struct Evidence {
 [[nodiscard]] std::string in_words(double factor);
 
 /// Cause of single values (irradiances, radiances) that should be `expected`: one factor, or the largest difference.
-[[nodiscard]] std::string diagnose_values(const std::vector<double>& expected, const std::vector<double>& measured,
-                                          double tolerance);
+[[nodiscard]] std::string diagnose_values(const std::vector<double>& expected,
+                                          const std::vector<double>& measured, double tolerance);
 
 }  // namespace plumbline::conformance

@@ -49,7 +49,8 @@ image::Image sky_image() {
   image::Image image = image::make_image(kWidth, kHeight);
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x)
-      image.at(x, y) = Rgb(static_cast<float>(truths::polynomial_sky(truths::lat_long_centre(kWidth, kHeight, x, y))));
+      image.at(x, y) =
+          Rgb(static_cast<float>(truths::polynomial_sky(truths::lat_long_centre(kWidth, kHeight, x, y))));
   return image;
 }
 
@@ -80,18 +81,26 @@ Table rows_of(const std::vector<glm::dmat3>& rotations) {
 std::string readme(int bands) {
   return fmt::format(
       "Questions of plumbline conform for {0} bands ({1} coefficients).\n"
-      "Answer any of them: write the CSV file named, one row of numbers separated by commas for each row of the\n"
+      "Answer any of them: write the CSV file named, one row of numbers separated by commas for each row of "
+      "the\n"
       "question, no header, 9 digits or more. Then run: plumbline conform --import THIS-FOLDER\n\n"
       "answer-basis.csv          {1} basis functions at each direction (x,y,z) of directions.csv\n"
-      "answer-projection.csv     {1} rows r,g,b: coefficients of the radiance of sky.exr (latitude-longitude,\n"
+      "answer-projection.csv     {1} rows r,g,b: coefficients of the radiance of sky.exr "
+      "(latitude-longitude,\n"
       "                          centre +X, u = 3/4 is +Z, top +Y, linear)\n"
-      "answer-rotation.csv       {1} coefficients of a.csv turned by each matrix (row-major) of rotations.csv\n"
+      "answer-rotation.csv       {1} coefficients of a.csv turned by each matrix (row-major) of "
+      "rotations.csv\n"
       "answer-product.csv        one row: {1} coefficients of the product of a.csv and b.csv\n"
-      "answer-irradiance.csv     irradiance E (not E/pi) of a.csv at each normal of directions.csv, one number a row\n"
-      "answer-directional.csv    {1} coefficients of a light of irradiance 1 from each direction of directions.csv\n\n"
-      "Write your convention into convention.json; 0 is unknown. The numbers are those of plumbline_conformance.h:\n"
-      "index_order 1 l(l+1)+m, 2 descending m, 3 x y z first, 4 m = 0, 1, -1, ...; sign 1 Condon-Shortley, 2 without;\n"
-      "norm 1 orthonormal, 2 4 pi, 3 semi-Schmidt, 4 unnormalised, 5 bare polynomials; axes: yours in world axes;\n"
+      "answer-irradiance.csv     irradiance E (not E/pi) of a.csv at each normal of directions.csv, one "
+      "number a row\n"
+      "answer-directional.csv    {1} coefficients of a light of irradiance 1 from each direction of "
+      "directions.csv\n\n"
+      "Write your convention into convention.json; 0 is unknown. The numbers are those of "
+      "plumbline_conformance.h:\n"
+      "index_order 1 l(l+1)+m, 2 descending m, 3 x y z first, 4 m = 0, 1, -1, ...; sign 1 Condon-Shortley, 2 "
+      "without;\n"
+      "norm 1 orthonormal, 2 4 pi, 3 semi-Schmidt, 4 unnormalised, 5 bare polynomials; axes: yours in world "
+      "axes;\n"
       "quantity 1 radiance, 2 /pi, 3 /4 pi, 4 irradiance, 5 irradiance/pi, 6 irradiance/pi^2.\n"
       "a.csv and b.csv are in Plumbline's convention: 1, 1, 1, [1,2,3], 1.\n",
       bands, bands * bands);
@@ -119,7 +128,8 @@ std::optional<Table> read_answer(const fs::path& file, std::size_t rows, std::si
       if (!value) refuse(file, number, "expected numbers separated by commas");
       row.push_back(*value);
     }
-    if (row.size() != columns) refuse(file, number, fmt::format("expected {} numbers, got {}", columns, row.size()));
+    if (row.size() != columns)
+      refuse(file, number, fmt::format("expected {} numbers, got {}", columns, row.size()));
     table.push_back(std::move(row));
   }
   if (table.size() != rows) refuse(file, number, fmt::format("expected {} rows, got {}", rows, table.size()));
@@ -186,8 +196,9 @@ Line judged_answer(const Question& question, const Table& table, int bands) {
     expected.push_back(pairs.expected[k][0]);
     measured.push_back(pairs.measured[k][0]);
   }
-  line.judged.cause = is_single ? diagnose_values(expected, measured, 1e-3)
-                                : diagnose({bands, pairs.expected, pairs.measured, std::max(1e-4, question.allowance)});
+  line.judged.cause =
+      is_single ? diagnose_values(expected, measured, 1e-3)
+                : diagnose({bands, pairs.expected, pairs.measured, std::max(1e-4, question.allowance)});
   f.detail = line.judged.cause;
   return line;
 }
@@ -199,10 +210,12 @@ Values channel(const Table& rows, std::size_t which) {
 }
 
 double irradiance(const Values& coefficients, const Vec3d& normal) {
-  const Values y = truths::basis(static_cast<int>(std::lround(std::sqrt(static_cast<double>(coefficients.size())))), normal);
+  const Values y = truths::basis(
+      static_cast<int>(std::lround(std::sqrt(static_cast<double>(coefficients.size())))), normal);
   double sum = 0.0;
   for (std::size_t i = 0; i < y.size(); ++i)
-    sum += truths::cosine_factor(static_cast<int>(std::sqrt(static_cast<double>(i) + 0.5))) * y[i] * coefficients[i];
+    sum += truths::cosine_factor(static_cast<int>(std::sqrt(static_cast<double>(i) + 0.5))) * y[i] *
+           coefficients[i];
   return sum;
 }
 
@@ -222,8 +235,9 @@ std::vector<Question> all_questions(const Questions& q, const Border& border) {
   const auto as_it_is = [](const Values& row) { return row; };
   return {
       {"evaluate basis", "answer-basis.csv", q.directions.size(), count,
-       each(q.directions, [n](const Vec3d& d) { return truths::basis(n, d); },
-            [&border, n](const Values& row) { return border.basis_to_ours(n, row); }),
+       each(
+           q.directions, [n](const Vec3d& d) { return truths::basis(n, d); },
+           [&border, n](const Values& row) { return border.basis_to_ours(n, row); }),
        rounding},
       {"project lat-long", "answer-projection.csv", count, 3,
        [&border, n](const Table& table) {
@@ -233,7 +247,9 @@ std::vector<Question> all_questions(const Questions& q, const Border& border) {
        },
        h * h},
       {"rotate", "answer-rotation.csv", q.rotations.size(), count,
-       each(q.rotations, [q, n](const glm::dmat3& r) { return truths::rotated(n, q.a, r); }, ours), rounding},
+       each(
+           q.rotations, [q, n](const glm::dmat3& r) { return truths::rotated(n, q.a, r); }, ours),
+       rounding},
       {"multiply", "answer-product.csv", 1, count,
        [q, &border, n](const Table& table) {
          Pairs pairs;
@@ -242,18 +258,24 @@ std::vector<Question> all_questions(const Questions& q, const Border& border) {
        },
        rounding},
       {"irradiance", "answer-irradiance.csv", q.directions.size(), 1,
-       each(q.directions, [q](const Vec3d& d) { return Values{irradiance(q.a, d)}; }, as_it_is), rounding},
+       each(
+           q.directions, [q](const Vec3d& d) { return Values{irradiance(q.a, d)}; }, as_it_is),
+       rounding},
       {"light directional", "answer-directional.csv", q.directions.size(), count,
-       each(q.directions, [n](const Vec3d& d) { return truths::basis(n, d); }, ours), rounding},
+       each(
+           q.directions, [n](const Vec3d& d) { return truths::basis(n, d); }, ours),
+       rounding},
   };
 }
 
 int read_bands(const fs::path& manifest) {
   if (!fs::exists(manifest))
-    throw InputError(fmt::format("{}: no such file: expected a folder of `plumbline conform --export`", manifest.string()));
+    throw InputError(fmt::format("{}: no such file: expected a folder of `plumbline conform --export`",
+                                 manifest.string()));
   try {
     const int bands = json::parse(read_file(manifest)).at("bands").get<int>();
-    if (bands < 1 || bands > 20) throw InputError(fmt::format("{}: bands: expected 1 to 20, got {}", manifest.string(), bands));
+    if (bands < 1 || bands > 20)
+      throw InputError(fmt::format("{}: bands: expected 1 to 20, got {}", manifest.string(), bands));
     return bands;
   } catch (const json::exception& error) {
     throw InputError(fmt::format("{}: {}", manifest.string(), one_line(error.what())));
@@ -265,9 +287,12 @@ int read_bands(const fs::path& manifest) {
 void write_questions(const fs::path& folder, int bands) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (!fs::is_directory(folder)) throw InputError(fmt::format("{}: cannot make this folder", folder.string()));
+  if (!fs::is_directory(folder))
+    throw InputError(fmt::format("{}: cannot make this folder", folder.string()));
   const Questions q = questions(bands);
-  const auto write = [&](const char* name, const std::string& text) { write_text_atomically(folder / name, text); };
+  const auto write = [&](const char* name, const std::string& text) {
+    write_text_atomically(folder / name, text);
+  };
   write("directions.csv", csv(rows_of(q.directions)));
   write("rotations.csv", csv(rows_of(q.rotations)));
   write("a.csv", csv({q.a}));
@@ -278,7 +303,8 @@ void write_questions(const fs::path& folder, int bands) {
   image::set_rgb_layer(sky, "", sky_image());
   image::write_exr(folder / "sky.exr", sky);
   write("convention.json",
-        json{{"index_order", 0}, {"sign", 0}, {"norm", 0}, {"axes", {0, 0, 0}}, {"quantity", 0}}.dump(2) + "\n");
+        json{{"index_order", 0}, {"sign", 0}, {"norm", 0}, {"axes", {0, 0, 0}}, {"quantity", 0}}.dump(2) +
+            "\n");
   write("README.txt", readme(bands));
   write("manifest.json", json{{"bands", bands}, {"version", PLUMBLINE_CONFORMANCE_VERSION}}.dump(2) + "\n");
 }

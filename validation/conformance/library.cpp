@@ -15,14 +15,17 @@ std::string fault_of(const plumbline_implementation& implementation) {
     return fmt::format("struct_size is {}, expected {} (compiled against another plumbline_conformance.h?)",
                        implementation.struct_size, sizeof(plumbline_implementation));
   if (implementation.abi_version != PLUMBLINE_CONFORMANCE_VERSION)
-    return fmt::format("abi_version is {}, expected {}", implementation.abi_version, PLUMBLINE_CONFORMANCE_VERSION);
+    return fmt::format("abi_version is {}, expected {}", implementation.abi_version,
+                       PLUMBLINE_CONFORMANCE_VERSION);
   if (implementation.name == nullptr) return "name is NULL";
   if (::strnlen(implementation.name, 1000) == 1000) return "name is longer than 999 bytes";
-  if (implementation.precision != PLUMBLINE_PRECISION_DOUBLE && implementation.precision != PLUMBLINE_PRECISION_FLOAT)
+  if (implementation.precision != PLUMBLINE_PRECISION_DOUBLE &&
+      implementation.precision != PLUMBLINE_PRECISION_FLOAT)
     return fmt::format("precision is {}, expected 1 (double) or 2 (float)", implementation.precision);
   if (implementation.max_bands < 1 || implementation.max_bands > 100'000)
     return fmt::format("max_bands is {}, expected 1 to 100000", implementation.max_bands);
-  if (implementation.light_unit != PLUMBLINE_LIGHT_PHYSICAL && implementation.light_unit != PLUMBLINE_LIGHT_FACING_ONE)
+  if (implementation.light_unit != PLUMBLINE_LIGHT_PHYSICAL &&
+      implementation.light_unit != PLUMBLINE_LIGHT_FACING_ONE)
     return fmt::format("light_unit is {}, expected 0 or 1", implementation.light_unit);
   if (implementation.reserved != 0) return fmt::format("reserved is {}, expected 0", implementation.reserved);
   return fault_of(implementation.convention);

@@ -87,7 +87,7 @@ typedef struct plumbline_convention {
   int32_t index_order; /* enum plumbline_index_order */
   int32_t sign;        /* enum plumbline_sign */
   int32_t norm;        /* enum plumbline_norm */
-  int32_t axes[3];     /* your textbook x, y, z are these world axes: 1 = x, 2 = y, 3 = z, negative = reversed.
+  int32_t axes[3];  /* your textbook x, y, z are these world axes: 1 = x, 2 = y, 3 = z, negative = reversed.
                                 {1, 2, 3}: polar axis z, no swap. {3, 1, 2}: your z is the world's y (y polar).
                                 All 0: unknown */
   int32_t quantity; /* enum plumbline_quantity */
@@ -102,7 +102,8 @@ enum plumbline_precision { PLUMBLINE_PRECISION_DOUBLE = 1, PLUMBLINE_PRECISION_F
 /* What directional lights and cones promise. */
 enum plumbline_light_unit {
   PLUMBLINE_LIGHT_PHYSICAL = 0, /* directional: irradiance 1 on a surface that faces it. Cone: radiance 1 */
-  PLUMBLINE_LIGHT_FACING_ONE = 1 /* both scaled so that a white Lambertian surface that faces the light has exit
+  PLUMBLINE_LIGHT_FACING_ONE =
+      1 /* both scaled so that a white Lambertian surface that faces the light has exit
                                     radiance 1 when lit through the same number of bands (as D3DX documents) */
 };
 
@@ -116,13 +117,13 @@ enum plumbline_distribution {
 /* ---------------------------------------------------------------- the implementation */
 
 typedef struct plumbline_implementation {
-  uint32_t struct_size;   /* sizeof(plumbline_implementation) */
-  uint32_t abi_version;   /* PLUMBLINE_CONFORMANCE_VERSION */
-  const char* name;       /* UTF-8, of the implementation and its version; not NULL */
-  int32_t precision;      /* enum plumbline_precision */
-  int32_t max_bands;      /* largest `bands` all functions take, >= 1 */
-  int32_t light_unit;     /* enum plumbline_light_unit */
-  int32_t reserved;       /* 0 */
+  uint32_t struct_size; /* sizeof(plumbline_implementation) */
+  uint32_t abi_version; /* PLUMBLINE_CONFORMANCE_VERSION */
+  const char* name;     /* UTF-8, of the implementation and its version; not NULL */
+  int32_t precision;    /* enum plumbline_precision */
+  int32_t max_bands;    /* largest `bands` all functions take, >= 1 */
+  int32_t light_unit;   /* enum plumbline_light_unit */
+  int32_t reserved;     /* 0 */
   plumbline_convention convention;
 
   /* values[k * n^2 + i] = basis function i at directions[3k ... 3k+2], k = 0 ... count-1. */
@@ -136,7 +137,8 @@ typedef struct plumbline_implementation {
    * v = (y + 1/2)/height with u = 1/2 + atan2(z, x)/2pi, v = acos(y)/pi: the image's centre is +X, u = 3/4 is +Z, its
    * top +Y. Each texel is a region of constant radiance; how you integrate is yours, the judge allows for the
    * difference to point or bilinear sampling. */
-  int (*project_lat_long)(int32_t bands, int32_t width, int32_t height, const float* rgb, double* coefficients);
+  int (*project_lat_long)(int32_t bands, int32_t width, int32_t height, const float* rgb,
+                          double* coefficients);
 
   /* The same for a cube map, 6 x size x size x 3, faces +X -X +Y -Y +Z -Z, each as OpenGL has them: with s, t from
    * the top left corner in [-1, 1], +X = (1, -t, -s), -X = (-1, -t, s), +Y = (s, 1, t), -Y = (s, -1, -t),
@@ -195,8 +197,8 @@ typedef struct plumbline_implementation {
 
   /* `count` random directions and their densities [1/sr], enum plumbline_distribution about +z. The same seed and
    * stream give the same samples; different streams (threads, pixels) are independent. */
-  int (*sample_directions)(int32_t distribution, uint64_t seed, uint64_t stream, size_t count, double* directions,
-                           double* densities);
+  int (*sample_directions)(int32_t distribution, uint64_t seed, uint64_t stream, size_t count,
+                           double* directions, double* densities);
 
   /* Mean of independent samples and its standard error sqrt(sum (x - mean)^2 / (count (count - 1))); count >= 2.
    * result[0] and result[1]. A non-finite sample must show in the result. */

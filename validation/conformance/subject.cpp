@@ -99,11 +99,11 @@ class Subject::Call {
     Values sent;
   };
   void note_unwritten(Guarded& output) {
-    const auto left = std::count_if(output.data(), output.data() + output.size(), [](double v) {
-      return std::bit_cast<std::uint64_t>(v) == kMarkerBits;
-    });
+    const auto left = std::count_if(output.data(), output.data() + output.size(),
+                                    [](double v) { return std::bit_cast<std::uint64_t>(v) == kMarkerBits; });
     if (left > 0)
-      subject_->note(fmt::format("{} leaves {} of {} output values unwritten", operation_, left, output.size()));
+      subject_->note(
+          fmt::format("{} leaves {} of {} output values unwritten", operation_, left, output.size()));
   }
 
   Subject* subject_;
@@ -135,13 +135,14 @@ Answer Subject::converted(int bands, const Answer& answer) const {
 Answer Subject::basis(int bands, const std::vector<Vec3d>& directions) {
   Call call(*this, "evaluate_basis");
   const double* in = call.in(flattened(directions));
-  const Answer raw = call.finish(
-      implementation_->evaluate_basis(bands, directions.size(), in, call.out(directions.size() * size_of(bands))));
+  const Answer raw = call.finish(implementation_->evaluate_basis(
+      bands, directions.size(), in, call.out(directions.size() * size_of(bands))));
   if (!raw) return raw;
   Values result;
   for (std::size_t k = 0; k < directions.size(); ++k) {
     const auto first = raw->begin() + static_cast<std::ptrdiff_t>(k * size_of(bands));
-    const Values row = border_.basis_to_ours(bands, {first, first + static_cast<std::ptrdiff_t>(size_of(bands))});
+    const Values row =
+        border_.basis_to_ours(bands, {first, first + static_cast<std::ptrdiff_t>(size_of(bands))});
     result.insert(result.end(), row.begin(), row.end());
   }
   return result;
@@ -150,8 +151,8 @@ Answer Subject::basis(int bands, const std::vector<Vec3d>& directions) {
 Answer Subject::hemisphere_basis(int bands, const std::vector<Vec3d>& directions) {
   Call call(*this, "evaluate_hemisphere_basis");
   const double* in = call.in(flattened(directions));
-  return call.finish(implementation_->evaluate_hemisphere_basis(bands, directions.size(), in,
-                                                                call.out(directions.size() * size_of(bands))));
+  return call.finish(implementation_->evaluate_hemisphere_basis(
+      bands, directions.size(), in, call.out(directions.size() * size_of(bands))));
 }
 
 Answer Subject::project_lat_long(int bands, const image::Image& image) {
@@ -188,15 +189,16 @@ Answer Subject::rotate(int bands, const glm::dmat3& rotation, const Values& in) 
     for (int column = 0; column < 3; ++column) rows.push_back(rotation[column][row]);
   const double* matrix = call.in(rows);
   const double* coefficients = call.in(border_.to_theirs(bands, in));
-  return converted(bands,
-                   call.finish(implementation_->rotate(bands, matrix, coefficients, call.out(size_of(bands)))));
+  return converted(
+      bands, call.finish(implementation_->rotate(bands, matrix, coefficients, call.out(size_of(bands)))));
 }
 
 Answer Subject::multiply(int bands, const Values& a, const Values& b) {
   Call call(*this, "multiply");
   const double* first = call.in(border_.to_theirs(bands, a));
   const double* second = call.in(border_.to_theirs(bands, b));
-  return converted(bands, call.finish(implementation_->multiply(bands, first, second, call.out(size_of(bands)))));
+  return converted(bands,
+                   call.finish(implementation_->multiply(bands, first, second, call.out(size_of(bands)))));
 }
 
 Answer Subject::exponential(int bands, const Values& in) {
@@ -228,7 +230,8 @@ Answer Subject::irradiance(int bands, const Values& coefficients, const Vec3d& n
 Answer Subject::light_directional(int bands, const Vec3d& direction) {
   Call call(*this, "light_directional");
   const double* d = call.in({direction.x, direction.y, direction.z});
-  return converted(bands, call.finish(implementation_->light_directional(bands, d, call.out(size_of(bands)))));
+  return converted(bands,
+                   call.finish(implementation_->light_directional(bands, d, call.out(size_of(bands)))));
 }
 
 Answer Subject::light_cone(int bands, const Vec3d& direction, double half_angle_rad) {
@@ -241,7 +244,8 @@ Answer Subject::light_cone(int bands, const Vec3d& direction, double half_angle_
 Answer Subject::light_sphere(int bands, const Vec3d& centre, double radius) {
   Call call(*this, "light_sphere");
   const double* c = call.in({centre.x, centre.y, centre.z});
-  return converted(bands, call.finish(implementation_->light_sphere(bands, c, radius, call.out(size_of(bands)))));
+  return converted(bands,
+                   call.finish(implementation_->light_sphere(bands, c, radius, call.out(size_of(bands)))));
 }
 
 Answer Subject::light_hemisphere(int bands, const Vec3d& up, double top, double bottom) {

@@ -31,36 +31,52 @@ const std::map<std::string, Call>& calls() {
   using I = Implementation;
   using A = Arguments;
   static const std::map<std::string, Call> kCalls{
-      {"evaluate basis", [](const I& i, A& x) { return i.evaluate_basis(x.bands, 1, x.direction.data(), x.out.data()); }},
+      {"evaluate basis",
+       [](const I& i, A& x) { return i.evaluate_basis(x.bands, 1, x.direction.data(), x.out.data()); }},
       {"hemisphere basis",
-       [](const I& i, A& x) { return i.evaluate_hemisphere_basis(x.bands, 1, x.direction.data(), x.out.data()); }},
+       [](const I& i, A& x) {
+         return i.evaluate_hemisphere_basis(x.bands, 1, x.direction.data(), x.out.data());
+       }},
       {"project lat-long",
        [](const I& i, A& x) { return i.project_lat_long(x.bands, 32, 16, x.pixels.data(), x.out.data()); }},
-      {"project cube", [](const I& i, A& x) { return i.project_cube(x.bands, 8, x.pixels.data(), x.out.data()); }},
+      {"project cube",
+       [](const I& i, A& x) { return i.project_cube(x.bands, 8, x.pixels.data(), x.out.data()); }},
       {"lookup lat-long",
-       [](const I& i, A& x) { return i.lookup_lat_long(32, 16, x.pixels.data(), x.direction.data(), x.out.data()); }},
-      {"rotate", [](const I& i, A& x) { return i.rotate(x.bands, x.matrix.data(), x.a.data(), x.out.data()); }},
-      {"multiply", [](const I& i, A& x) { return i.multiply(x.bands, x.a.data(), x.b.data(), x.out.data()); }},
+       [](const I& i, A& x) {
+         return i.lookup_lat_long(32, 16, x.pixels.data(), x.direction.data(), x.out.data());
+       }},
+      {"rotate",
+       [](const I& i, A& x) { return i.rotate(x.bands, x.matrix.data(), x.a.data(), x.out.data()); }},
+      {"multiply",
+       [](const I& i, A& x) { return i.multiply(x.bands, x.a.data(), x.b.data(), x.out.data()); }},
       {"exponential", [](const I& i, A& x) { return i.exponential(x.bands, x.a.data(), x.out.data()); }},
       {"logarithm", [](const I& i, A& x) { return i.logarithm(x.bands, x.b.data(), x.out.data()); }},
       {"rotate zonal",
-       [](const I& i, A& x) { return i.rotate_zonal(x.bands, x.a.data(), x.direction.data(), x.out.data()); }},
+       [](const I& i, A& x) {
+         return i.rotate_zonal(x.bands, x.a.data(), x.direction.data(), x.out.data());
+       }},
       {"irradiance",
        [](const I& i, A& x) { return i.irradiance(x.bands, x.a.data(), x.direction.data(), x.out.data()); }},
       {"light directional",
        [](const I& i, A& x) { return i.light_directional(x.bands, x.direction.data(), x.out.data()); }},
-      {"light cone", [](const I& i, A& x) { return i.light_cone(x.bands, x.direction.data(), 0.5, x.out.data()); }},
-      {"light sphere", [](const I& i, A& x) { return i.light_sphere(x.bands, x.direction.data(), 0.5, x.out.data()); }},
+      {"light cone",
+       [](const I& i, A& x) { return i.light_cone(x.bands, x.direction.data(), 0.5, x.out.data()); }},
+      {"light sphere",
+       [](const I& i, A& x) { return i.light_sphere(x.bands, x.direction.data(), 0.5, x.out.data()); }},
       {"light hemisphere",
-       [](const I& i, A& x) { return i.light_hemisphere(x.bands, x.direction.data(), 1.0, 0.5, x.out.data()); }},
+       [](const I& i, A& x) {
+         return i.light_hemisphere(x.bands, x.direction.data(), 1.0, 0.5, x.out.data());
+       }},
       {"transfer unshadowed",
        [](const I& i, A& x) { return i.transfer_unshadowed(x.bands, x.direction.data(), x.out.data()); }},
       {"relight", [](const I& i, A& x) { return i.relight(x.bands, x.a.data(), x.b.data(), x.out.data()); }},
       {"window", [](const I& i, A& x) { return i.window(x.bands, x.a.data(), x.out.data()); }},
-      {"dominant direction", [](const I& i, A& x) { return i.dominant_direction(x.bands, x.a.data(), x.out.data()); }},
+      {"dominant direction",
+       [](const I& i, A& x) { return i.dominant_direction(x.bands, x.a.data(), x.out.data()); }},
       {"sample directions",
        [](const I& i, A& x) { return i.sample_directions(0, 1, 0, 1, x.out.data(), x.out.data() + 3); }},
-      {"mean and error", [](const I& i, A& x) { return i.mean_and_error(x.a.size(), x.a.data(), x.out.data()); }},
+      {"mean and error",
+       [](const I& i, A& x) { return i.mean_and_error(x.a.size(), x.a.data(), x.out.data()); }},
       {"rmse", [](const I& i, A& x) { return i.rmse(x.a.size(), x.a.data(), x.b.data(), x.out.data()); }},
   };
   return kCalls;
@@ -88,8 +104,8 @@ double seconds_of(const std::function<void()>& work, int repeats) {
 
 }  // namespace
 
-std::optional<double> nanoseconds(const plumbline_implementation& implementation, const std::string& operation,
-                                  int bands) {
+std::optional<double> nanoseconds(const plumbline_implementation& implementation,
+                                  const std::string& operation, int bands) {
   constexpr double kShortest = 1e-3;
   const auto call = calls().find(operation);
   if (call == calls().end()) return std::nullopt;

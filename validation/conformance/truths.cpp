@@ -80,11 +80,13 @@ Values rotated(int bands, const Values& coefficients, const glm::dmat3& rotation
 }
 
 Values product(int bands, const Values& a, const Values& b) {
-  return projected(bands, [&](const Vec3d& w) { return value(a, w) * value(b, w); }, 2 * bands);
+  return projected(
+      bands, [&](const Vec3d& w) { return value(a, w) * value(b, w); }, 2 * bands);
 }
 
 Values composed(int bands, const Values& a, const std::function<double(double)>& g) {
-  return projected(bands, [&](const Vec3d& w) { return g(value(a, w)); }, std::max(24, 3 * bands));
+  return projected(
+      bands, [&](const Vec3d& w) { return g(value(a, w)); }, std::max(24, 3 * bands));
 }
 
 Vec3d lat_long_centre(int width, int height, double x, double y) {
@@ -146,7 +148,8 @@ std::vector<glm::dmat3> rotations() {
   result.push_back(turn(kPi / 2.0, {0, 0, 1}));
   result.push_back(turn(kPi / 2.0, {1, 0, 0}));
   result.emplace_back(1.0);
-  for (const Vec3d& axis : {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}) result.push_back(turn(kPi, axis));
+  for (const Vec3d& axis : {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}})
+    result.push_back(turn(kPi, axis));
   for (const double beta : {0.0, 1e-8, kPi, kPi - 1e-8})
     result.push_back(turn(0.4, {0, 0, 1}) * turn(beta, {0, 1, 0}) * turn(-1.1, {0, 0, 1}));
   return result;

@@ -51,8 +51,9 @@ plumbline_implementation make() {
   result.name = "Boost.Math spherical_harmonic";
   result.precision = PLUMBLINE_PRECISION_DOUBLE;
   result.max_bands = 20;
-  result.convention = {PLUMBLINE_INDEX_L_SQUARED, PLUMBLINE_SIGN_CONDON_SHORTLEY, PLUMBLINE_NORM_ORTHONORMAL,
-                       {1, 2, 3},                 PLUMBLINE_QUANTITY_RADIANCE,    PLUMBLINE_LAYOUT_INTERLEAVED};
+  result.convention = {PLUMBLINE_INDEX_L_SQUARED,   PLUMBLINE_SIGN_CONDON_SHORTLEY,
+                       PLUMBLINE_NORM_ORTHONORMAL,  {1, 2, 3},
+                       PLUMBLINE_QUANTITY_RADIANCE, PLUMBLINE_LAYOUT_INTERLEAVED};
   result.evaluate_basis = evaluate_basis;
   result.rotate_zonal = rotate_zonal;
   result.light_directional = light_directional;

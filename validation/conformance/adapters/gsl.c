@@ -53,7 +53,9 @@ const plumbline_implementation* plumbline_conformance_entry(uint32_t host_versio
   static plumbline_implementation implementation = {
       .struct_size = sizeof(plumbline_implementation),
       .abi_version = PLUMBLINE_CONFORMANCE_VERSION,
-      .name = "GSL " "gsl_sf_legendre_array",
+      .name =
+          "GSL "
+          "gsl_sf_legendre_array",
       .precision = PLUMBLINE_PRECISION_DOUBLE,
       .max_bands = 20,
       .convention = {.index_order = PLUMBLINE_INDEX_L_SQUARED,

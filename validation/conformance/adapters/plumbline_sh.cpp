@@ -63,7 +63,8 @@ int evaluate_basis(std::int32_t bands, std::size_t count, const double* directio
 
 // sqrt(2) y_lm with cos theta' = 2 z - 1: z in [0, 1] covers the sphere once, and dz' = 2 dz. sin theta'/sin theta is
 // 2 sqrt(z/(1 + z)).
-int evaluate_hemisphere_basis(std::int32_t bands, std::size_t count, const double* directions, double* values) {
+int evaluate_hemisphere_basis(std::int32_t bands, std::size_t count, const double* directions,
+                              double* values) {
   return answered([&] {
     const sh::Basis<double> basis(bands);
     for (std::size_t k = 0; k < count; ++k) {
@@ -141,9 +142,8 @@ int logarithm(std::int32_t bands, const double* in, double* out) {
 }
 
 int rotate_zonal(std::int32_t bands, const double* zonal, const double* axis, double* out) {
-  return answered([&] {
-    write(sh::rotate_zonal(read(zonal, static_cast<std::size_t>(bands)), vector_at(axis)), out);
-  });
+  return answered(
+      [&] { write(sh::rotate_zonal(read(zonal, static_cast<std::size_t>(bands)), vector_at(axis)), out); });
 }
 
 /// A_l y_lm(n) over `divisor`.

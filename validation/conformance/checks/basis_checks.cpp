@@ -69,12 +69,14 @@ std::string gram_cause(const Pairs& gram, bool has_places) {
   for (std::size_t i = 0; i < size && std::isnan(common); ++i) {
     const double square = gram.measured[i][i];
     if (std::abs(square - 1.0) > 1e-4)
-      parts.push_back(fmt::format("{} is {} (squared norm {:.6g})", name(i), in_words(std::sqrt(square)), square));
+      parts.push_back(
+          fmt::format("{} is {} (squared norm {:.6g})", name(i), in_words(std::sqrt(square)), square));
   }
   for (std::size_t i = 0; i < size; ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (std::abs(gram.measured[i][j]) > 1e-4)
-        parts.push_back(fmt::format("{} and {} are not orthogonal ({:.4g})", name(i), name(j), gram.measured[i][j]));
+        parts.push_back(
+            fmt::format("{} and {} are not orthogonal ({:.4g})", name(i), name(j), gram.measured[i][j]));
   if (parts.empty()) return "a small error spread over the functions";
   constexpr std::size_t kMost = 4;
   const std::string rest = parts.size() > kMost ? fmt::format("; and {} more", parts.size() - kMost) : "";
@@ -95,8 +97,9 @@ std::vector<Judged> gram(const Context& context) {
     const double error = pairs.error(context.ruler);
     // Values are wrong by rounding() each; their products integrate with weights that add up to 4 pi.
     const double bound = 4.0 * kPi * 2.0 * rounding(context, bands);
-    results.push_back(judged(context, {kBasis, "Gram matrix", "Exact quadrature; rounding of the values", bands}, error,
-                             bound, context.ruler.accepts(error, bound) ? "" : gram_cause(pairs, true)));
+    results.push_back(
+        judged(context, {kBasis, "Gram matrix", "Exact quadrature; rounding of the values", bands}, error,
+               bound, context.ruler.accepts(error, bound) ? "" : gram_cause(pairs, true)));
   }
   return results;
 }
@@ -109,9 +112,9 @@ std::vector<Judged> values(const Context& context) {
         rows(must(context.subject.basis(bands, directions), "unit directions"), size_of(bands));
     Pairs pairs;
     for (std::size_t k = 0; k < directions.size(); ++k) pairs.add(truths::basis(bands, directions[k]), y[k]);
-    results.push_back(judged_coefficients(context,
-                                          {kBasis, "values and signs", "Definition in long double; rounding", bands},
-                                          pairs, rounding(context, bands), 1e-5));
+    results.push_back(judged_coefficients(
+        context, {kBasis, "values and signs", "Definition in long double; rounding", bands}, pairs,
+        rounding(context, bands), 1e-5));
   }
   return results;
 }
@@ -136,7 +139,8 @@ std::vector<Judged> addition_theorem(const Context& context) {
     pairs.add(right, sum);
   }
   const double bound = 2.0 * (2.0 * bands) * rounding(context, bands);
-  return {judged_values(context, {kBasis, "addition theorem", "sum over m of y y' = (2l + 1)/4 pi P_l", bands}, pairs,
+  return {judged_values(context,
+                        {kBasis, "addition theorem", "sum over m of y y' = (2l + 1)/4 pi P_l", bands}, pairs,
                         bound, 1e-5)};
 }
 
@@ -157,7 +161,8 @@ std::vector<Judged> poles(const Context& context) {
           const auto minus = static_cast<std::size_t>(l * (l + 1) - m);
           const double pair = std::hypot(right[plus], right[minus]);
           const double error = std::hypot(y[plus] - right[plus], y[minus] - right[minus]) / pair;
-          if (pair < 1e-290 || (context.subject.epsilon() > 1e-10 && pair < 1e-30)) continue;  // near underflow
+          if (pair < 1e-290 || (context.subject.epsilon() > 1e-10 && pair < 1e-30))
+            continue;  // near underflow
           const double next = context.ruler.worse(worst, error);
           if (next == worst) continue;
           worst = next;
@@ -169,12 +174,13 @@ std::vector<Judged> poles(const Context& context) {
   }
   // 4 n^2 roundings; relative, because x and y are given to full precision there.
   const double bound = 4.0 * bands * bands * context.subject.epsilon();
-  const std::string cause =
-      fmt::format("digits of m > 0 are lost near the poles: {:.1g} of the pair m = +-{} at {:.0e} rad from the pole "
-                  "(sin theta taken from 1 - z^2?)",
-                  worst, worst_m, worst_angle);
-  return {judged(context, {kBasis, "digits near the poles", "Relative to each pair +-m: 4 n^2 roundings", bands}, worst,
-                 bound, cause)};
+  const std::string cause = fmt::format(
+      "digits of m > 0 are lost near the poles: {:.1g} of the pair m = +-{} at {:.0e} rad from the pole "
+      "(sin theta taken from 1 - z^2?)",
+      worst, worst_m, worst_angle);
+  return {judged(context,
+                 {kBasis, "digits near the poles", "Relative to each pair +-m: 4 n^2 roundings", bands},
+                 worst, bound, cause)};
 }
 
 /// Radiance of unit integral from z = 1 side of the hemisphere.
@@ -200,8 +206,8 @@ std::vector<Judged> hemisphere_gram(const Context& context) {
   // Functions of a hemisphere are sqrt(2) larger and twice as steep; odd m of some are roots, which the rule's
   // 16 n nodes a ring and 4 n rings integrate to 1e-6.
   const double bound = 1e-6 + 100.0 * rounding(context, bands);
-  return {judged(context, {kHemisphere, "Gram matrix over z > 0", "Quadrature over the hemisphere", bands}, error, bound,
-                 context.ruler.accepts(error, bound) ? "" : gram_cause(pairs, false))};
+  return {judged(context, {kHemisphere, "Gram matrix over z > 0", "Quadrature over the hemisphere", bands},
+                 error, bound, context.ruler.accepts(error, bound) ? "" : gram_cause(pairs, false))};
 }
 
 bool has_basis(const Implementation& i) {

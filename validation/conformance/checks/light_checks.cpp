@@ -21,7 +21,8 @@ double facing_exit_radiance(int bands, const Values& light, const Vec3d& d) {
   const Values y = truths::basis(bands, d);
   double sum = 0.0;
   for (int l = 0; l < bands; ++l)
-    for (std::size_t i = static_cast<std::size_t>(l * l); i < static_cast<std::size_t>((l + 1) * (l + 1)); ++i)
+    for (std::size_t i = static_cast<std::size_t>(l * l); i < static_cast<std::size_t>((l + 1) * (l + 1));
+         ++i)
       sum += truths::cosine_factor(l) * y[i] * light[i];
   return sum / kPi;
 }
@@ -44,8 +45,9 @@ std::vector<Judged> directional(const Context& context) {
   for (const Vec3d& d : checks::probe_directions())
     pairs.add(in_unit(context, truths::basis(context.bands, d), d),
               must(context.subject.light_directional(context.bands, d), "a unit direction"));
-  return {judged_coefficients(context, {kDirectional, "y_lm(d)", "A pulse of the declared unit; rounding", context.bands},
-                              pairs, 8.0 * pairs.scale() * rounding(context, context.bands), 1e-5)};
+  return {judged_coefficients(
+      context, {kDirectional, "y_lm(d)", "A pulse of the declared unit; rounding", context.bands}, pairs,
+      8.0 * pairs.scale() * rounding(context, context.bands), 1e-5)};
 }
 
 std::vector<Judged> cones(const Context& context) {
@@ -61,9 +63,10 @@ std::vector<Judged> cones(const Context& context) {
     for (double& v : answer) v /= size;
     pairs.add(expected, answer);
   }
-  return {judged_coefficients(context, {kCone, "caps from 0.27 to 180 degrees", "Exact quadrature of the cap; rounding",
-                                        context.bands},
-                              pairs, 64.0 * pairs.scale() * rounding(context, context.bands), 1e-5)};
+  return {judged_coefficients(
+      context,
+      {kCone, "caps from 0.27 to 180 degrees", "Exact quadrature of the cap; rounding", context.bands}, pairs,
+      64.0 * pairs.scale() * rounding(context, context.bands), 1e-5)};
 }
 
 std::vector<Judged> spheres(const Context& context) {
@@ -73,15 +76,16 @@ std::vector<Judged> spheres(const Context& context) {
     const double sine = 1.0 / distance;
     const double width = sine * sine / (1.0 + std::sqrt(1.0 - sine * sine));
     Values expected = truths::about_axis(truths::zonal_integral(context.bands, width, 0), d);
-    Values answer =
-        must(context.subject.light_sphere(context.bands, 2.0 * distance * d, 2.0), "a sphere that does not hold the origin");
+    Values answer = must(context.subject.light_sphere(context.bands, 2.0 * distance * d, 2.0),
+                         "a sphere that does not hold the origin");
     const double size = std::abs(expected[0]);
     for (double& v : expected) v /= size;
     for (double& v : answer) v /= size;
     pairs.add(expected, answer);
   }
-  return {judged_coefficients(context, {kSphere, "near and far", "The cap with sin a = r/d; rounding", context.bands}, pairs,
-                              64.0 * pairs.scale() * rounding(context, context.bands), 1e-5)};
+  return {judged_coefficients(context,
+                              {kSphere, "near and far", "The cap with sin a = r/d; rounding", context.bands},
+                              pairs, 64.0 * pairs.scale() * rounding(context, context.bands), 1e-5)};
 }
 
 /// Bands 0 and 1 are fixed by the irradiance, even bands above must vanish, odd ones above cannot be seen.
@@ -99,8 +103,8 @@ std::vector<Judged> hemisphere(const Context& context) {
     pairs.add(truths::about_axis(zonal, up), answer);
   }
   return {judged_coefficients(context,
-                              {kHemisphere, "promised exit radiance", "E = pi (bottom + (top - bottom)(1 + n.up)/2); rounding",
-                               context.bands},
+                              {kHemisphere, "promised exit radiance",
+                               "E = pi (bottom + (top - bottom)(1 + n.up)/2); rounding", context.bands},
                               pairs, 64.0 * pairs.scale() * rounding(context, context.bands), 1e-5)};
 }
 

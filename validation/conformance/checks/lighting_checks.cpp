@@ -31,7 +31,8 @@ int degree_of(std::size_t index) {
 Values convolved(Values v) {
   Values factors;
   for (std::size_t i = 0; i < v.size(); ++i) {
-    if (static_cast<std::size_t>(degree_of(i)) >= factors.size()) factors.push_back(truths::cosine_factor(degree_of(i)));
+    if (static_cast<std::size_t>(degree_of(i)) >= factors.size())
+      factors.push_back(truths::cosine_factor(degree_of(i)));
     v[i] *= factors[static_cast<std::size_t>(degree_of(i))];
   }
   return v;
@@ -67,9 +68,9 @@ std::vector<Judged> irradiance_kernel(const Context& context) {
     }
     pairs.add(convolved(truths::basis(context.bands, n)), response);
   }
-  return {judged_coefficients(context, {kIrradiance, "response to each coefficient", "A_l y_lm(n); rounding",
-                                        context.bands},
-                              pairs, 128.0 * rounding(context, context.bands), 1e-5)};
+  return {judged_coefficients(
+      context, {kIrradiance, "response to each coefficient", "A_l y_lm(n); rounding", context.bands}, pairs,
+      128.0 * rounding(context, context.bands), 1e-5)};
 }
 
 std::vector<Judged> irradiance_uniform(const Context& context) {
@@ -97,9 +98,9 @@ std::vector<Judged> irradiance_pulse(const Context& context) {
     lost_negative = lost_negative || (expected < -1e-4 && std::abs(answer) < 1e-12);
     pairs.add({expected}, {answer});
   }
-  Judged result = judged_values(context, {kIrradiance, "a light without extent", "sum A_l (2l + 1)/4 pi P_l; rounding",
-                                          context.bands},
-                                pairs, 64.0 * rounding(context, context.bands), 1e-4);
+  Judged result = judged_values(
+      context, {kIrradiance, "a light without extent", "sum A_l (2l + 1)/4 pi P_l; rounding", context.bands},
+      pairs, 64.0 * rounding(context, context.bands), 1e-4);
   if (lost_negative && !result.cause.empty())
     result.cause = result.finding.detail = "negative irradiance of band-limited light is set to 0";
   return {result};
@@ -113,11 +114,13 @@ std::vector<Judged> irradiance_polynomial(const Context& context) {
   const glm::dmat3 q(0.4, 0.125, -0.175, 0.125, -0.3, 0.1, -0.175, 0.1, 0.0);
   Pairs pairs;
   for (const Vec3d& n : checks::probe_directions()) {
-    const double expected = 2.0 * kPi + 2.0 * kPi / 3.0 * glm::dot(b, n) + kPi / 4.0 * (0.1 + glm::dot(n, q * n));
+    const double expected =
+        2.0 * kPi + 2.0 * kPi / 3.0 * glm::dot(b, n) + kPi / 4.0 * (0.1 + glm::dot(n, q * n));
     pairs.add({expected}, {irradiance_of(context, c, n)});
   }
-  return {judged_values(context, {kIrradiance, "polynomial sky", "Closed form of a degree-2 sky; rounding", context.bands},
-                        pairs, 64.0 * rounding(context, context.bands), 1e-4)};
+  return {judged_values(
+      context, {kIrradiance, "polynomial sky", "Closed form of a degree-2 sky; rounding", context.bands},
+      pairs, 64.0 * rounding(context, context.bands), 1e-4)};
 }
 
 std::vector<Judged> irradiance_linear(const Context& context) {
@@ -132,7 +135,8 @@ std::vector<Judged> irradiance_linear(const Context& context) {
   }
   const double bound = 512.0 * rounding(context, context.bands);
   return {judged(context, {kIrradiance, "linear", "E(2a - 3b) = 2E(a) - 3E(b); rounding", context.bands},
-                 pairs.error(context.ruler), bound, "irradiance is not linear in the light (clamped, or a fitted lobe)")};
+                 pairs.error(context.ruler), bound,
+                 "irradiance is not linear in the light (clamped, or a fitted lobe)")};
 }
 
 // ---------------------------------------------------------------- transfer and relighting
@@ -143,9 +147,9 @@ std::vector<Judged> transfer(const Context& context) {
     for (double& v : expected) v /= kPi;
     pairs.add(expected, must(context.subject.transfer_unshadowed(context.bands, n), "a unit normal"));
   }
-  return {judged_coefficients(context, {kTransfer, "clamped cosine about each normal", "A_l y_lm(n)/pi; rounding",
-                                        context.bands},
-                              pairs, 16.0 * rounding(context, context.bands), 1e-5)};
+  return {judged_coefficients(
+      context, {kTransfer, "clamped cosine about each normal", "A_l y_lm(n)/pi; rounding", context.bands},
+      pairs, 16.0 * rounding(context, context.bands), 1e-5)};
 }
 
 std::vector<Judged> relight_dot(const Context& context) {
@@ -160,7 +164,8 @@ std::vector<Judged> relight_dot(const Context& context) {
     }
     pairs.add(t, response);
   }
-  return {judged_coefficients(context, {kRelight, "transfer . light", "A dot product; rounding", context.bands}, pairs,
+  return {judged_coefficients(context,
+                              {kRelight, "transfer . light", "A dot product; rounding", context.bands}, pairs,
                               16.0 * rounding(context, context.bands), 1e-5)};
 }
 
@@ -191,11 +196,13 @@ std::vector<Judged> relight_whole(const Context& context) {
       if (!(std::abs(v[k] - pairs.measured[k][0]) <= 1e-4)) return false;
     return true;
   };
-  Judged result = judged_values(context, {kRelight, "own transfer under own light", "sum A_l (2l + 1)/4 pi^2 P_l(n.d); rounding",
-                                          bands},
-                                pairs, 64.0 * rounding(context, bands), 1e-4);
+  Judged result = judged_values(
+      context,
+      {kRelight, "own transfer under own light", "sum A_l (2l + 1)/4 pi^2 P_l(n.d); rounding", bands}, pairs,
+      64.0 * rounding(context, bands), 1e-4);
   if (result.cause.empty()) return {result};
-  if (is_like(mixed)) result.cause = "light and transfer use different signs for odd m (Condon-Shortley phase)";
+  if (is_like(mixed))
+    result.cause = "light and transfer use different signs for odd m (Condon-Shortley phase)";
   if (is_like(reversed)) result.cause = "light and transfer use opposite directions";
   result.finding.detail = result.cause;
   return {result};
@@ -231,9 +238,11 @@ std::vector<Judged> window_factors(const Context& context) {
   pairs.add(expected, out);
   const double bound = 16.0 * rounding(context, bands);
   std::vector<Judged> results{judged_coefficients(
-      context, {kWindow, "one factor a band, band 0 kept", "Definition of a window; rounding", bands}, pairs, bound, 1e-5)};
-  results.push_back(judged(context, {kWindow, "factors in 0 ... 1", "A window never amplifies; rounding", bands}, outside,
-                           bound, "a factor is negative or above 1"));
+      context, {kWindow, "one factor a band, band 0 kept", "Definition of a window; rounding", bands}, pairs,
+      bound, 1e-5)};
+  results.push_back(judged(context,
+                           {kWindow, "factors in 0 ... 1", "A window never amplifies; rounding", bands},
+                           outside, bound, "a factor is negative or above 1"));
   return results;
 }
 
@@ -247,9 +256,11 @@ std::vector<Judged> window_rotation(const Context& context) {
               must(context.subject.window(bands, truths::rotated(bands, in, r)), "radiance coefficients"));
   // A window that searches for its strength may stop a little earlier or later in the turned function.
   const double bound = 1e-3 * pairs.scale();
-  return {judged(context, {kWindow, "the same however the function is turned", "Rotation invariance, search to 1e-3", bands},
-                 pairs.error(context.ruler), bound,
-                 "the window depends on how the function is turned (a sum over m that leaves some out)")};
+  return {judged(
+      context,
+      {kWindow, "the same however the function is turned", "Rotation invariance, search to 1e-3", bands},
+      pairs.error(context.ruler), bound,
+      "the window depends on how the function is turned (a sum over m that leaves some out)")};
 }
 
 std::vector<Judged> dominant(const Context& context) {
@@ -258,17 +269,20 @@ std::vector<Judged> dominant(const Context& context) {
   for (const Vec3d& d : checks::probe_directions()) {
     Values c = truths::basis(context.bands, d);
     c[0] = 3.0;
-    const Values answer = must(context.subject.dominant_direction(context.bands, c), "coefficients with a direction");
+    const Values answer =
+        must(context.subject.dominant_direction(context.bands, c), "coefficients with a direction");
     pairs.add({d.x, d.y, d.z}, answer);
   }
-  Judged result = judged_values(context, {kDominant, "known directions", "Band 1 points there; rounding", context.bands},
-                                pairs, 16.0 * rounding(context, context.bands), 1e-4);
+  Judged result =
+      judged_values(context, {kDominant, "known directions", "Band 1 points there; rounding", context.bands},
+                    pairs, 16.0 * rounding(context, context.bands), 1e-4);
   const Answer none = context.subject.dominant_direction(context.bands, Values(size_of(context.bands), 0.0));
   const double answered = none ? 1.0 : 0.0;
   const bool is_nan = none && std::isnan((*none)[0]);
-  return {result, judged(context, {kDominant, "no light, no direction", "Refused", context.bands}, answered, 0.0,
-                         is_nan ? "NaN for zero coefficients (normalises a vector of length 0)"
-                                : "answers where there is no direction")};
+  return {result,
+          judged(context, {kDominant, "no light, no direction", "Refused", context.bands}, answered, 0.0,
+                 is_nan ? "NaN for zero coefficients (normalises a vector of length 0)"
+                        : "answers where there is no direction")};
 }
 
 bool has_irradiance(const Implementation& i) {

@@ -43,7 +43,8 @@ double distance(const Values& a, const Values& b) {
 }
 
 /// Which products of two functions are wrong, as "(l, m) (l, m) -> (l, m)".
-std::string entry_cause(const Pairs& pairs, const std::vector<std::array<std::size_t, 2>>& which, double bound) {
+std::string entry_cause(const Pairs& pairs, const std::vector<std::array<std::size_t, 2>>& which,
+                        double bound) {
   std::string text;
   int count = 0;
   for (std::size_t k = 0; k < which.size(); ++k) {
@@ -79,8 +80,8 @@ std::vector<Judged> tensor(const Context& context) {
         cause.starts_with("no two"))
       cause = entry_cause(pairs, which, std::max(bound, 1e-5));
   }
-  return {judged(context, {kProduct, "each pair of functions", "Exact quadrature of y y y; rounding", bands}, error, bound,
-                 cause)};
+  return {judged(context, {kProduct, "each pair of functions", "Exact quadrature of y y y; rounding", bands},
+                 error, bound, cause)};
 }
 
 std::vector<Judged> products(const Context& context) {
@@ -91,8 +92,9 @@ std::vector<Judged> products(const Context& context) {
     const Values b = truths::some_values(size_of(bands), 2 * k + 1);
     pairs.add(truths::product(bands, a, b), must(context.subject.multiply(bands, a, b), "a product"));
   }
-  return {judged_coefficients(context, {kProduct, "against quadrature", "Exact quadrature; n^4 rounded terms", bands}, pairs,
-                              8.0 * bands * bands * rounding(context, bands), 1e-5)};
+  return {judged_coefficients(context,
+                              {kProduct, "against quadrature", "Exact quadrature; n^4 rounded terms", bands},
+                              pairs, 8.0 * bands * bands * rounding(context, bands), 1e-5)};
 }
 
 /// (a + b z)^2 in closed form: needs no quadrature.
@@ -136,7 +138,8 @@ std::vector<Judged> exp_constants(const Context& context) {
   Pairs pairs;
   for (const double a : {0.0, 1.0, -1.0, 2.0, -3.0}) {
     Values expected = constant(context.bands, 1.0);  // relative to e^a
-    Values measured = must(context.subject.exponential(context.bands, constant(context.bands, a)), "a constant");
+    Values measured =
+        must(context.subject.exponential(context.bands, constant(context.bands, a)), "a constant");
     for (double& v : measured) v /= std::exp(a);
     pairs.add(expected, measured);
   }
@@ -146,9 +149,11 @@ std::vector<Judged> exp_constants(const Context& context) {
   // exp(s a) for exp(a): from the answers for a = 1 and -1.
   const double growth = std::log(pairs.measured[1][0] / pairs.measured[2][0]) / 2.0 + 1.0;
   if (std::isfinite(growth) && std::abs(growth - 1.0) > 1e-3)
-    cause = fmt::format("the constant part is exp({:.4g} a) for exp(a): c_00 is scaled by {:.4g} instead of 1/sqrt(4 pi)",
-                        growth, growth / kWhite);
-  return {judged(context, {kExp, "constants", "exp(a) sqrt(4 pi); rounding", context.bands}, error, bound, cause)};
+    cause = fmt::format(
+        "the constant part is exp({:.4g} a) for exp(a): c_00 is scaled by {:.4g} instead of 1/sqrt(4 pi)",
+        growth, growth / kWhite);
+  return {judged(context, {kExp, "constants", "exp(a) sqrt(4 pi); rounding", context.bands}, error, bound,
+                 cause)};
 }
 
 /// exp(a + f), f small: the answer is known to first order whatever the method.
@@ -161,8 +166,9 @@ std::vector<Judged> exp_small(const Context& context) {
               must(context.subject.exponential(context.bands, f), "a small function"));
   }
   // The second order: half of the square, whose norm is at most |f|^2 max|y| n.
-  return {judged_coefficients(context, {kExp, "small functions", "First order is exact: error <= |f|^2", context.bands},
-                              pairs, size * size, 0.02)};
+  return {judged_coefficients(
+      context, {kExp, "small functions", "First order is exact: error <= |f|^2", context.bands}, pairs,
+      size * size, 0.02)};
 }
 
 /// Error norm of an answer over the error norm of the first-order one.
@@ -184,13 +190,14 @@ std::vector<Judged> exp_shapes(const Context& context) {
     const Values oracle = truths::composed(bands, in, [](double v) { return std::exp(v); });
     Values first = sum(constant(bands, 1.0), f);
     for (double& v : first) v *= std::exp(-1.0);
-    const double ratio =
-        against_first_order(context, oracle, first, must(context.subject.exponential(bands, in), "a function"));
+    const double ratio = against_first_order(context, oracle, first,
+                                             must(context.subject.exponential(bands, in), "a function"));
     worst = context.ruler.worse(worst, ratio);
     detail += fmt::format(" {:.3g} at |f| = {:g};", ratio, size);
   }
-  Judged result = judged(context, {kExp, "beats the first order", "Error over that of exp(a)(1 + f), |f| = 1, 2, 4", bands},
-                         worst, 0.9, "no better than exp(a)(1 + f): terms beyond the first are missing or wrong:" + detail);
+  Judged result = judged(
+      context, {kExp, "beats the first order", "Error over that of exp(a)(1 + f), |f| = 1, 2, 4", bands},
+      worst, 0.9, "no better than exp(a)(1 + f): terms beyond the first are missing or wrong:" + detail);
   if (result.cause.empty()) result.finding.detail = "Error over that of exp(a)(1 + f):" + detail;
   return {result};
 }
@@ -204,18 +211,19 @@ std::vector<Judged> exp_large(const Context& context) {
     for (const double v : *answer)
       if (std::isnan(v)) unbounded += 1.0;
   }
-  return {judged(context, {kExp, "large functions", "Finite, infinite or refused, never NaN", context.bands}, unbounded, 0.0,
-                 "NaN for a large function")};
+  return {judged(context, {kExp, "large functions", "Finite, infinite or refused, never NaN", context.bands},
+                 unbounded, 0.0, "NaN for a large function")};
 }
 
 std::vector<Judged> log_constants(const Context& context) {
   Pairs pairs;
   for (const double a : {1.0, 2.0, 0.05}) {
-    pairs.add(constant(context.bands, std::log(a)),
-              must(context.subject.logarithm(context.bands, constant(context.bands, a)), "a positive constant"));
+    pairs.add(
+        constant(context.bands, std::log(a)),
+        must(context.subject.logarithm(context.bands, constant(context.bands, a)), "a positive constant"));
   }
-  return {judged_coefficients(context, {kLog, "constants", "log(a) sqrt(4 pi); rounding", context.bands}, pairs,
-                              16.0 * pairs.scale() * rounding(context, context.bands), 1e-6)};
+  return {judged_coefficients(context, {kLog, "constants", "log(a) sqrt(4 pi); rounding", context.bands},
+                              pairs, 16.0 * pairs.scale() * rounding(context, context.bands), 1e-6)};
 }
 
 std::vector<Judged> log_small(const Context& context) {
@@ -226,8 +234,9 @@ std::vector<Judged> log_small(const Context& context) {
     pairs.add(truths::composed(context.bands, f, [](double v) { return std::log(v); }),
               must(context.subject.logarithm(context.bands, f), "a positive function"));
   }
-  return {judged_coefficients(context, {kLog, "nearly constant", "First order is exact: error <= |f|^2", context.bands},
-                              pairs, size * size, 0.02)};
+  return {judged_coefficients(
+      context, {kLog, "nearly constant", "First order is exact: error <= |f|^2", context.bands}, pairs,
+      size * size, 0.02)};
 }
 
 std::vector<Judged> log_shapes(const Context& context) {
@@ -244,8 +253,8 @@ std::vector<Judged> log_shapes(const Context& context) {
         worst, against_first_order(context, oracle, first,
                                    must(context.subject.logarithm(bands, in), "a positive function")));
   }
-  return {judged(context, {kLog, "beats the first order", "Error over that of log(a) + f/a", bands}, worst, 0.9,
-                 fmt::format("no better than log(a) + f/a: {:.3g} of its error", worst))};
+  return {judged(context, {kLog, "beats the first order", "Error over that of log(a) + f/a", bands}, worst,
+                 0.9, fmt::format("no better than log(a) + f/a: {:.3g} of its error", worst))};
 }
 
 std::vector<Judged> log_negative(const Context& context) {
@@ -253,8 +262,9 @@ std::vector<Judged> log_negative(const Context& context) {
   const Answer answer = context.subject.logarithm(context.bands, in);
   double bad = 0.0;
   for (const double v : answer.value_or(Values{})) bad += std::isnan(v) ? 1.0 : 0.0;
-  return {judged(context, {kLog, "functions that are not positive", "Clipped or refused, never NaN", context.bands}, bad,
-                 0.0, "NaN for a function with values below 0")};
+  return {judged(context,
+                 {kLog, "functions that are not positive", "Clipped or refused, never NaN", context.bands},
+                 bad, 0.0, "NaN for a function with values below 0")};
 }
 
 bool has_product(const Implementation& i) {

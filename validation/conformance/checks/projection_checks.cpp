@@ -60,16 +60,20 @@ std::string white_cause(const std::vector<double>& resolution, const std::vector
   std::string bad;
   std::size_t good = 0;
   for (std::size_t k = 0; k <= last; ++k) {
-    if (error[k] <= bound) ++good;
-    else bad += fmt::format("{}{:g}", bad.empty() ? "" : ", ", resolution[k]);
+    if (error[k] <= bound)
+      ++good;
+    else
+      bad += fmt::format("{}{:g}", bad.empty() ? "" : ", ", resolution[k]);
   }
   if (good > 0) return "wrong at some sizes only, of this many rows: " + bad;
-  const double order = std::log(error[last - 1] / error[last]) / std::log(resolution[last] / resolution[last - 1]);
+  const double order =
+      std::log(error[last - 1] / error[last]) / std::log(resolution[last] / resolution[last - 1]);
   // Falls with the square of the texel: weights of the midpoint rule; the same at all sizes: a factor.
   if (error[last] < 0.02 && order > 1.5 && order < 2.5)
-    return fmt::format("texel weights do not add up to 4 pi: {:.2g} at the coarsest, falling with the square of the "
-                       "resolution (weights at the texel's middle instead of its solid angle)",
-                       error.front());
+    return fmt::format(
+        "texel weights do not add up to 4 pi: {:.2g} at the coarsest, falling with the square of the "
+        "resolution (weights at the texel's middle instead of its solid angle)",
+        error.front());
   if (order < -0.5) return "the result grows with the resolution: the weights lack the texels' solid angle";
   return diagnose({bands, {pairs.expected.back()}, {pairs.measured.back()}, 1e-3});
 }
@@ -95,8 +99,8 @@ Judged white_finding(const Context& context, const char* operation, const Pairs&
   const double bound = kWhite * (1e-6 + sum_rounding(context, texels));
   const std::string cause =
       context.ruler.accepts(error, bound) ? "" : white_cause(resolution, errors, bound, pairs, bands);
-  return judged(context, {operation, "radiance 1", "c_00 = sqrt(4 pi) at every size, all others 0", bands}, error, bound,
-                cause);
+  return judged(context, {operation, "radiance 1", "c_00 = sqrt(4 pi) at every size, all others 0", bands},
+                error, bound, cause);
 }
 
 /// c_00 alone: higher bands of midpoint sampling are judged by their own bound elsewhere.
@@ -134,8 +138,9 @@ std::vector<Judged> white_cube(const Context& context) {
 std::vector<Judged> white_bands(const Context& context) {
   const image::Image image = image::make_image(128, 64, Rgb(1.0F));
   Pairs pairs;
-  pairs.add(white(context.bands),
-            channel(must(context.subject.project_lat_long(context.bands, image), "an image of radiance 1"), 0));
+  pairs.add(
+      white(context.bands),
+      channel(must(context.subject.project_lat_long(context.bands, image), "an image of radiance 1"), 0));
   const double h = kPi / 64.0;
   return {judged_coefficients(context, {kLatLong, "bands of radiance 1", kTexelSource, context.bands}, pairs,
                               kWhite * (moment_bound(context.bands, h) + sum_rounding(context, 8192)), 1e-2)};
@@ -151,7 +156,7 @@ std::vector<Judged> texels_lat_long(const Context& context) {
   constexpr int kWidth = 256;
   constexpr int kHeight = 128;
   // Both sides of the seam, near the poles and in between; three colours see that channels stay apart.
-  constexpr std::array kTexels{Texel{0, 40},  Texel{255, 41}, Texel{127, 9},  Texel{190, 64},
+  constexpr std::array kTexels{Texel{0, 40},   Texel{255, 41}, Texel{127, 9}, Texel{190, 64},
                                Texel{60, 100}, Texel{13, 118}, Texel{100, 30}};
   Pairs pairs;
   double scale = 0.0;
@@ -159,8 +164,9 @@ std::vector<Judged> texels_lat_long(const Context& context) {
     const Values truth = truths::lat_long_texel(context.bands, kWidth, kHeight, t.x, t.y);
     const double power = 1.0 / truth[0];  // makes each texel's c_00 the same
     const auto value = static_cast<float>(power);
-    const Values c = must(context.subject.project_lat_long(context.bands, spot_image(kWidth, kHeight, t.x, t.y, value)),
-                          "an image with one bright texel");
+    const Values c =
+        must(context.subject.project_lat_long(context.bands, spot_image(kWidth, kHeight, t.x, t.y, value)),
+             "an image with one bright texel");
     Values expected = truth;
     for (double& v : expected) v *= static_cast<double>(value);
     for (const double v : expected) scale = std::max(scale, std::abs(v));
@@ -184,16 +190,16 @@ std::vector<Judged> texels_cube(const Context& context) {
       const auto value = static_cast<float>(1.0 / truth[0]);
       std::vector<Rgb> texels(static_cast<std::size_t>(6 * kSize * kSize), Rgb(0.0F));
       texels[static_cast<std::size_t>((face * kSize + t.y) * kSize + t.x)] = Rgb(value);
-      const Values c =
-          must(context.subject.project_cube(context.bands, kSize, texels), "a cube map with one bright texel");
+      const Values c = must(context.subject.project_cube(context.bands, kSize, texels),
+                            "a cube map with one bright texel");
       Values expected = truth;
       for (double& v : expected) v *= static_cast<double>(value);
       for (const double v : expected) scale = std::max(scale, std::abs(v));
       pairs.add(expected, channel(c, 1));
     }
   }
-  return {judged_coefficients(context, {kCube, "one bright texel on each face", kTexelSource, context.bands}, pairs,
-                              scale * moment_bound(context.bands, 2.0 / kSize), 0.02)};
+  return {judged_coefficients(context, {kCube, "one bright texel on each face", kTexelSource, context.bands},
+                              pairs, scale * moment_bound(context.bands, 2.0 / kSize), 0.02)};
 }
 
 // Face +Z of radiance 1: c_00 = sqrt(4 pi)/6, c_10 = sqrt(3/4 pi) 4/sqrt 2 atan(1/sqrt 2), c_20 from the integral of
@@ -219,11 +225,13 @@ std::vector<Judged> six_faces(const Context& context) {
   expected[8] = c20 * std::sqrt(3.0) / 2.0 * (sum(0) - sum(1));
   expected.resize(size_of(bands));
   Pairs pairs;
-  pairs.add(expected, channel(must(context.subject.project_cube(bands, kSize, texels), "a cube map of six colours"), 1));
+  pairs.add(
+      expected,
+      channel(must(context.subject.project_cube(bands, kSize, texels), "a cube map of six colours"), 1));
   // Bilinear with neighbouring faces blends half a texel at the edges: up to 1/kSize of a face's difference.
-  return {judged_coefficients(context, {kCube, "six faces of different colour", "Closed form to l = 2; midpoint rule",
-                                        bands},
-                              pairs, 63.0 * (moment_bound(bands, 2.0 / kSize) + 1e-6), 0.02)};
+  return {judged_coefficients(
+      context, {kCube, "six faces of different colour", "Closed form to l = 2; midpoint rule", bands}, pairs,
+      63.0 * (moment_bound(bands, 2.0 / kSize) + 1e-6), 0.02)};
 }
 
 // ---------------------------------------------------------------- smooth skies
@@ -237,18 +245,18 @@ std::vector<Judged> polynomial(const Context& context) {
     image::Image image = image::make_image(2 * height, height);
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < 2 * height; ++x)
-        image.at(x, y) =
-            Rgb(static_cast<float>(truths::polynomial_sky(truths::lat_long_centre(2 * height, height, x, y))));
+        image.at(x, y) = Rgb(
+            static_cast<float>(truths::polynomial_sky(truths::lat_long_centre(2 * height, height, x, y))));
     finest = {};
     finest.add(truth, channel(must(context.subject.project_lat_long(bands, image), "a smooth sky"), 1));
     // Errors are brought to those of 16 rows: they fall with h^2.
     error = context.ruler.worse(error, finest.error(context.ruler) * std::pow(height / 16.0, 2));
     bound = finest.scale() * moment_bound(3, kPi / 16.0);
   }
-  const std::string cause = context.ruler.accepts(error, bound)
-                                ? ""
-                                : diagnose({bands, finest.expected, finest.measured, 0.01});
-  return {judged(context, {kLatLong, "polynomial sky, three sizes", "Error falls with h^2", bands}, error, bound, cause)};
+  const std::string cause =
+      context.ruler.accepts(error, bound) ? "" : diagnose({bands, finest.expected, finest.measured, 0.01});
+  return {judged(context, {kLatLong, "polynomial sky, three sizes", "Error falls with h^2", bands}, error,
+                 bound, cause)};
 }
 
 std::vector<Judged> linear(const Context& context) {
@@ -282,7 +290,8 @@ std::vector<Judged> linear(const Context& context) {
     cause = "radiance 0.5 counts as 0.214: linear input is decoded with the sRGB curve";
   else if (std::abs(ratio - 1.0) > 1e-3)
     cause += fmt::format("; radiance 0.5 is {}", in_words(ratio));
-  return {judged(context, {kLatLong, "linear in the radiance", "Linearity of the integral; rounding", context.bands},
+  return {judged(context,
+                 {kLatLong, "linear in the radiance", "Linearity of the integral; rounding", context.bands},
                  error, bound, cause)};
 }
 
@@ -297,14 +306,16 @@ Judged sun(const Context& context, const char* operation, const Project& project
     pairs.add(base, measured);
   }
   const double bound = pairs.scale() * sum_rounding(context, 64);
-  return judged_coefficients(context, {operation, "suns of 1e5, 1e6 and 1e30", "Proportional; rounding", context.bands},
-                             pairs, bound, 1e-3);
+  return judged_coefficients(
+      context, {operation, "suns of 1e5, 1e6 and 1e30", "Proportional; rounding", context.bands}, pairs,
+      bound, 1e-3);
 }
 
 std::vector<Judged> sun_lat_long(const Context& context) {
   return {sun(context, kLatLong, [&](float power) {
-    return channel(must(context.subject.project_lat_long(context.bands, spot_image(16, 8, 5, 3, power)), "a bright sun"),
-                   0);
+    return channel(
+        must(context.subject.project_lat_long(context.bands, spot_image(16, 8, 5, 3, power)), "a bright sun"),
+        0);
   })};
 }
 std::vector<Judged> sun_cube(const Context& context) {
@@ -334,17 +345,20 @@ std::vector<Judged> lookups(const Context& context) {
   for (const double pole : {1.0, -1.0}) {
     Values texel = must(context.subject.lookup_lat_long(image, {0.0, pole, 0.0}), "a pole");
     const bool is_column = texel[0] >= 0.0 && texel[0] < kWidth;
-    pairs.add({0.0, pole > 0.0 ? 0.0 : kHeight - 1.0, 1.0}, {is_column ? 0.0 : std::nan(""), texel[1], texel[2]});
+    pairs.add({0.0, pole > 0.0 ? 0.0 : kHeight - 1.0, 1.0},
+              {is_column ? 0.0 : std::nan(""), texel[1], texel[2]});
   }
   Values seam = must(context.subject.lookup_lat_long(image, {-1.0, 0.0, 0.0}), "a direction on the seam");
   const bool is_side = seam[0] == 0.0 || seam[0] == kWidth - 1.0;
   pairs.add({0.0, 1.0}, {is_side ? 0.0 : std::nan(""), seam[2]});
   const double error = pairs.error(context.ruler);
   std::string cause = "another texel than the nearest";
-  if (std::isnan(error)) cause = "reads outside of the image (no clamp in the last row or column, or at the poles)";
+  if (std::isnan(error))
+    cause = "reads outside of the image (no clamp in the last row or column, or at the poles)";
   else if (pairs.measured[0][0] != 0.0 || pairs.measured[0][1] != 0.0)
     cause += fmt::format(": texel ({:g}, {:g}) for (0, 0)", pairs.measured[0][0], pairs.measured[0][1]);
-  return {judged(context, {kLookup, "every texel, poles and seam", "The texel's own value"}, error, 0.0, cause)};
+  return {
+      judged(context, {kLookup, "every texel, poles and seam", "The texel's own value"}, error, 0.0, cause)};
 }
 
 bool has_lat_long(const Implementation& i) {

@@ -92,8 +92,9 @@ std::vector<Judged> matrices(const Context& context) {
   const double error = pairs.error(context.ruler);
   const std::string cause =
       context.ruler.accepts(error, bound) ? "" : rotation_cause(bands, inputs, rotations, pairs);
-  return {judged(context, {kRotate, "13 rotations, the bad ones too", "Projected anew by exact quadrature", bands}, error,
-                 bound, cause)};
+  return {judged(context,
+                 {kRotate, "13 rotations, the bad ones too", "Projected anew by exact quadrature", bands},
+                 error, bound, cause)};
 }
 
 std::vector<Judged> composition(const Context& context) {
@@ -112,7 +113,8 @@ std::vector<Judged> composition(const Context& context) {
   }
   const double bound = 8.0 * pairs.scale() * rounding(context, bands);
   const bool is_reversed = reversed.error(right_ruler()) <= bound;
-  return {judged(context, {kRotate, "R(b) R(a) = R(b a)", "Group property; rounding of three rotations", bands},
+  return {judged(context,
+                 {kRotate, "R(b) R(a) = R(b a)", "Group property; rounding of three rotations", bands},
                  pairs.error(context.ruler), bound,
                  is_reversed ? "order of composition is reversed: R(b) R(a) gives R(a b)"
                              : "two rotations in a row are not the rotation by the product")};
@@ -140,9 +142,11 @@ std::vector<Judged> own_basis(const Context& context) {
     pairs.add(right, answer);
   }
   const double bound = 8.0 * bands * bands * rounding(context, bands);
-  return {judged(context, {kRotate, "fits its own basis", "f(R^-1 w) with the implementation's functions; rounding", bands},
-                 pairs.error(context.ruler), bound,
-                 "rotation and basis do not belong together (signs, axes, or direction of turning)")};
+  return {judged(
+      context,
+      {kRotate, "fits its own basis", "f(R^-1 w) with the implementation's functions; rounding", bands},
+      pairs.error(context.ruler), bound,
+      "rotation and basis do not belong together (signs, axes, or direction of turning)")};
 }
 
 std::vector<Judged> energy(const Context& context) {
@@ -158,7 +162,8 @@ std::vector<Judged> energy(const Context& context) {
   for (const glm::dmat3& r : truths::rotations())
     pairs.add(energies(in), energies(must(context.subject.rotate(bands, r, in), "a rotation")));
   const double bound = 8.0 * pairs.scale() * rounding(context, bands);
-  return {judged_values(context, {kRotate, "energy of each band", "Orthogonality; rounding", bands}, pairs, bound, 1e-4)};
+  return {judged_values(context, {kRotate, "energy of each band", "Orthogonality; rounding", bands}, pairs,
+                        bound, 1e-4)};
 }
 
 std::vector<Judged> zonal(const Context& context) {
@@ -167,9 +172,9 @@ std::vector<Judged> zonal(const Context& context) {
   const Values z = truths::some_values(static_cast<std::size_t>(bands), 2);
   for (const Vec3d& d : checks::probe_directions())
     pairs.add(truths::about_axis(z, d), must(context.subject.rotate_zonal(bands, z, d), "a unit axis"));
-  return {judged_coefficients(context, {kZonal, "random lobes about every axis", "sqrt(4 pi/(2l + 1)) z_l y_lm; rounding",
-                                        bands},
-                              pairs, 8.0 * rounding(context, bands), 1e-5)};
+  return {judged_coefficients(
+      context, {kZonal, "random lobes about every axis", "sqrt(4 pi/(2l + 1)) z_l y_lm; rounding", bands},
+      pairs, 8.0 * rounding(context, bands), 1e-5)};
 }
 
 bool has_rotate(const Implementation& i) {

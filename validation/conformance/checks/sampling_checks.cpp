@@ -19,12 +19,14 @@ constexpr const char* kMean = "mean and error";
 constexpr const char* kRmse = "rmse";
 constexpr double kSignificance = 1e-4;
 constexpr std::size_t kCount = 1 << 16;
-constexpr std::array kDistributions{PLUMBLINE_SAMPLE_SPHERE, PLUMBLINE_SAMPLE_HEMISPHERE, PLUMBLINE_SAMPLE_COSINE};
+constexpr std::array kDistributions{PLUMBLINE_SAMPLE_SPHERE, PLUMBLINE_SAMPLE_HEMISPHERE,
+                                    PLUMBLINE_SAMPLE_COSINE};
 constexpr std::array kNames{"sphere", "hemisphere", "cosine"};
 
 using Samples = Subject::Samples;
 
-Samples drawn(const Context& context, int distribution, std::uint64_t seed, std::uint64_t stream, std::size_t count) {
+Samples drawn(const Context& context, int distribution, std::uint64_t seed, std::uint64_t stream,
+              std::size_t count) {
   const std::optional<Samples> samples = context.subject.sample_directions(distribution, seed, stream, count);
   if (!samples) throw Refusal{"refuses to sample directions"};
   return *samples;
@@ -51,11 +53,13 @@ std::vector<Judged> validity(const Context& context) {
       density_error = context.ruler.worse(density_error, std::abs(samples.densities[i] - density));
     }
   }
-  return {judged(context, {kSamples, "unit directions", "Unit length, finite, above z = 0 for the hemisphere"}, bad, 0.0,
-                 fmt::format("{:g} of {} directions are not finite, not of unit length or below the surface", bad,
-                             3 * kCount)),
-          judged(context, {kSamples, "densities", "1/4 pi, 1/2 pi, z/pi; rounding"}, density_error,
-                 16.0 * context.subject.epsilon(), fmt::format("densities are wrong by {:.3g}", density_error))};
+  return {
+      judged(context, {kSamples, "unit directions", "Unit length, finite, above z = 0 for the hemisphere"},
+             bad, 0.0,
+             fmt::format("{:g} of {} directions are not finite, not of unit length or below the surface", bad,
+                         3 * kCount)),
+      judged(context, {kSamples, "densities", "1/4 pi, 1/2 pi, z/pi; rounding"}, density_error,
+             16.0 * context.subject.epsilon(), fmt::format("densities are wrong by {:.3g}", density_error))};
 }
 
 std::vector<Judged> moments(const Context& context) {
@@ -76,14 +80,15 @@ std::vector<Judged> moments(const Context& context) {
       const double z = std::abs(e.mean - kMoments.at(k).at(m)) / e.standard_error;
       const double next = context.ruler.worse(worst, z);
       if (next != worst || std::isnan(next))
-        where = fmt::format("{} of the {} distribution is {:.4f}, should be {:.4f}", kWhich.at(m), kNames.at(k), e.mean,
-                            kMoments.at(k).at(m));
+        where = fmt::format("{} of the {} distribution is {:.4f}, should be {:.4f}", kWhich.at(m),
+                            kNames.at(k), e.mean, kMoments.at(k).at(m));
       worst = next;
     }
   }
   const double bound = metrics::two_sided_z(metrics::sidak(kSignificance, tests));
-  Judged result = judged(context, {kSamples, "moments", "Closed forms; largest |z| of 12 tests, significance 1e-4 in all"},
-                         worst, bound, where);
+  Judged result = judged(
+      context, {kSamples, "moments", "Closed forms; largest |z| of 12 tests, significance 1e-4 in all"},
+      worst, bound, where);
   result.finding.unit = "standard errors";
   result.finding.seed = 2;
   return {result};
@@ -96,11 +101,12 @@ std::vector<Judged> distinct(const Context& context) {
   for (const Vec3d& d : samples.directions) heights.insert(d.z);
   const auto repeated = static_cast<double>(kDraws - heights.size());
   // Floats between -1 and 1 have 2^24 values and more: 4096 draws repeat one in two runs.
-  return {judged(context, {kSamples, "distinct values", "4096 draws from 2^24 values: 0.5 repeated; bound 20"}, repeated,
-                 20.0,
-                 fmt::format("only {} different values in {} samples: a coarse random number generator, the error stops "
-                             "falling there",
-                             heights.size(), kDraws))};
+  return {judged(
+      context, {kSamples, "distinct values", "4096 draws from 2^24 values: 0.5 repeated; bound 20"}, repeated,
+      20.0,
+      fmt::format("only {} different values in {} samples: a coarse random number generator, the error stops "
+                  "falling there",
+                  heights.size(), kDraws))};
 }
 
 std::vector<Judged> streams(const Context& context) {
@@ -112,7 +118,8 @@ std::vector<Judged> streams(const Context& context) {
   for (std::size_t i = 0; i < kCount; ++i) differing += a.directions[i] != again.directions[i] ? 1.0 : 0.0;
   const auto correlation = [&](const Samples& other) {
     metrics::RunningMoments product;
-    for (std::size_t i = 0; i < kCount; ++i) product.add(3.0 * glm::dot(a.directions[i], other.directions[i]));
+    for (std::size_t i = 0; i < kCount; ++i)
+      product.add(3.0 * glm::dot(a.directions[i], other.directions[i]));
     const metrics::Estimate e = product.estimate();
     return e.standard_error > 0.0 ? std::abs(e.mean) / e.standard_error : HUGE_VAL;
   };
@@ -120,7 +127,8 @@ std::vector<Judged> streams(const Context& context) {
   return {judged(context, {kSamples, "repeatable", "Same seed and stream, same bits"}, differing, 0.0,
                  "the same seed and stream give other samples"),
           judged(context, {kSamples, "independent streams", "Correlation of two streams, in standard errors"},
-                 correlation(b), bound, "all streams share one set of directions: errors are correlated, variance is a lie"),
+                 correlation(b), bound,
+                 "all streams share one set of directions: errors are correlated, variance is a lie"),
           judged(context, {kSamples, "independent seeds", "Correlation of two seeds, in standard errors"},
                  correlation(c), bound, "the seed changes nothing")};
 }
@@ -135,7 +143,8 @@ std::vector<Judged> small_means(const Context& context) {
   pairs.add({2.5, std::sqrt(5.0 / 12.0)}, mean_of(context, {1.0, 2.0, 3.0, 4.0}));
   pairs.add({0.0, 1.0}, mean_of(context, {-1.0, 1.0}));
   const double bound = 64.0 * context.subject.epsilon();
-  return {judged_values(context, {kMean, "known samples", "sqrt(sum (x - mean)^2/(n (n - 1)))"}, pairs, bound, 1e-6)};
+  return {judged_values(context, {kMean, "known samples", "sqrt(sum (x - mean)^2/(n (n - 1)))"}, pairs, bound,
+                        1e-6)};
 }
 
 std::vector<Judged> large_offset(const Context& context) {
@@ -145,8 +154,9 @@ std::vector<Judged> large_offset(const Context& context) {
   const Values answer = mean_of(context, samples);
   const double expected = std::sqrt(0.25 / 999.0);
   const double error = std::abs(answer[1] / expected - 1.0);
-  return {judged(context, {kMean, "error of values far from 0", "Spread 0.5 about 1e8: n eps |offset|/spread"}, error, 1e-3,
-                 fmt::format("standard error {:.4g} for {:.4g}: E[x^2] - E[x]^2 cancels", answer[1], expected))};
+  return {judged(
+      context, {kMean, "error of values far from 0", "Spread 0.5 about 1e8: n eps |offset|/spread"}, error,
+      1e-3, fmt::format("standard error {:.4g} for {:.4g}: E[x^2] - E[x]^2 cancels", answer[1], expected))};
 }
 
 std::vector<Judged> long_sum(const Context& context) {
@@ -185,8 +195,10 @@ std::vector<Judged> known_rmse(const Context& context) {
   if (!result.cause.empty()) {
     const double small = pairs.measured[2][0];
     const double apart = pairs.measured[1][0];
-    if (apart == 0.0) result.cause = "0 for different images: an image is compared with itself";
-    else if (small == 0.0 || small > 1e-3) result.cause = "differences below 1/255 are lost: compares 8-bit values";
+    if (apart == 0.0)
+      result.cause = "0 for different images: an image is compared with itself";
+    else if (small == 0.0 || small > 1e-3)
+      result.cause = "differences below 1/255 are lost: compares 8-bit values";
     result.finding.detail = result.cause;
   }
   return {result};
@@ -196,8 +208,10 @@ std::vector<Judged> visible_in_rmse(const Context& context) {
   double hidden = 0.0;
   std::string which;
   const double nan = std::nan("");
-  const std::array<std::pair<double, double>, 4> cases{{{nan, 1.0}, {1.0, nan}, {HUGE_VAL, 1.0}, {1.0, HUGE_VAL}}};
-  constexpr std::array kCases{"NaN in the reference", "NaN in the test", "Inf in the reference", "Inf in the test"};
+  const std::array<std::pair<double, double>, 4> cases{
+      {{nan, 1.0}, {1.0, nan}, {HUGE_VAL, 1.0}, {1.0, HUGE_VAL}}};
+  constexpr std::array kCases{"NaN in the reference", "NaN in the test", "Inf in the reference",
+                              "Inf in the test"};
   for (std::size_t k = 0; k < cases.size(); ++k) {
     const Answer answer = context.subject.rmse({1.0, cases.at(k).first, 2.0}, {1.0, cases.at(k).second, 2.0});
     if (!answer || !std::isfinite((*answer)[0])) continue;

@@ -36,34 +36,37 @@ plumbline_implementation ours_with(Member plumbline_implementation::*member, Fun
 /// kChange(bands, y, direction) after our basis.
 template <auto kChange>
 plumbline_implementation basis_then() {
-  return ours_with(&plumbline_implementation::evaluate_basis,
-                   +[](std::int32_t bands, std::size_t count, const double* directions, double* values) {
-                     const int status = plumbline_sh().evaluate_basis(bands, count, directions, values);
-                     for (std::size_t k = 0; k < count; ++k)
-                       kChange(bands, values + k * count_of(bands), vector_of(directions + 3 * k));
-                     return status;
-                   });
+  return ours_with(
+      &plumbline_implementation::evaluate_basis,
+      +[](std::int32_t bands, std::size_t count, const double* directions, double* values) {
+        const int status = plumbline_sh().evaluate_basis(bands, count, directions, values);
+        for (std::size_t k = 0; k < count; ++k)
+          kChange(bands, values + k * count_of(bands), vector_of(directions + 3 * k));
+        return status;
+      });
 }
 
 /// kChange(bands, c) after our projection of lat-long images; c is n^2 rows of rgb.
 template <auto kChange>
 plumbline_implementation lat_long_then() {
-  return ours_with(&plumbline_implementation::project_lat_long,
-                   +[](std::int32_t bands, std::int32_t width, std::int32_t height, const float* rgb, double* c) {
-                     const int status = plumbline_sh().project_lat_long(bands, width, height, rgb, c);
-                     kChange(bands, c);
-                     return status;
-                   });
+  return ours_with(
+      &plumbline_implementation::project_lat_long,
+      +[](std::int32_t bands, std::int32_t width, std::int32_t height, const float* rgb, double* c) {
+        const int status = plumbline_sh().project_lat_long(bands, width, height, rgb, c);
+        kChange(bands, c);
+        return status;
+      });
 }
 
 /// kChange(bands, out) after one of ours that takes (bands, const double*, double* out).
 template <auto kMember, auto kChange>
 plumbline_implementation unary_then() {
-  return ours_with(kMember, +[](std::int32_t bands, const double* in, double* out) {
-    const int status = (plumbline_sh().*kMember)(bands, in, out);
-    kChange(bands, out);
-    return status;
-  });
+  return ours_with(
+      kMember, +[](std::int32_t bands, const double* in, double* out) {
+        const int status = (plumbline_sh().*kMember)(bands, in, out);
+        kChange(bands, out);
+        return status;
+      });
 }
 
 /// Multiplies each degree.
@@ -82,7 +85,8 @@ struct TexelSample {
 
 /// sum over texels of weight radiance y(direction), as kSample(x, y, width, height, rgb) says.
 template <auto kSample>
-int summed_lat_long(std::int32_t bands, std::int32_t width, std::int32_t height, const float* rgb, double* c) {
+int summed_lat_long(std::int32_t bands, std::int32_t width, std::int32_t height, const float* rgb,
+                    double* c) {
   std::fill_n(c, 3 * count_of(bands), 0.0);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
@@ -136,7 +140,8 @@ inline double row_weight(int width, int height, int y) {
 }
 /// What a right implementation takes.
 inline TexelSample right_sample(int x, int y, int width, int height, const float* rgb) {
-  return {truths::lat_long_centre(width, height, x, y), row_weight(width, height, y), pixel(rgb, width, x, y)};
+  return {truths::lat_long_centre(width, height, x, y), row_weight(width, height, y),
+          pixel(rgb, width, x, y)};
 }
 inline TexelSample right_cube_sample(int face, int x, int y, int size, const float* rgb) {
   const double s = (2.0 * x + 1.0) / size - 1.0;

@@ -10,7 +10,8 @@ namespace plumbline::conformance {
 
 std::vector<Fault> all_faults() {
   std::vector<Fault> all;
-  for (const auto part : {basis_faults, projection_faults, operation_faults, lighting_faults, statistics_faults}) {
+  for (const auto part :
+       {basis_faults, projection_faults, operation_faults, lighting_faults, statistics_faults}) {
     const std::vector<Fault> faults = part();
     all.insert(all.end(), faults.begin(), faults.end());
   }
@@ -19,14 +20,16 @@ std::vector<Fault> all_faults() {
 
 const std::vector<UnjudgedFault>& transport_faults() {
   static const std::vector<UnjudgedFault> kFaults{
-      {"M11, L9, T27", "iterating T <- T + B T instead of summing B^k T0: right at one bounce, too bright after"},
+      {"M11, L9, T27",
+       "iterating T <- T + B T instead of summing B^k T0: right at one bounce, too bright after"},
       {"M12, T28", "a bounce without 1/pi, or without the 4 pi of its directions"},
       {"M15", "SH lightmap whose factors of bands 0 and 1 disagree"},
       {"M25", "probes that miss one bounce of mixed lights"},
       {"L6", "visibility skips triangles by vertex index: duplicated vertices hide themselves"},
       {"T29", "normals normalised for direct light, not for indirect"},
       {"T31", "occluders farther than a fixed distance vanish"},
-      {"T38, T39, T40", "light counted twice, densities that disagree, pulses not divided by the sample count"},
+      {"T38, T39, T40",
+       "light counted twice, densities that disagree, pulses not divided by the sample count"},
       {"T41, T42", "Russian roulette without its weight, a fixed bounce limit sold as converged"},
       {"T43, T50", "shadow epsilons, triangles lost in the hierarchy"},
       {"T46", "isotropic phase function 1/pi"},
@@ -65,8 +68,8 @@ Kill judge_fault(const Fault& fault, int bands, const Ruler& ruler) {
       if (result.finding.verdict != checks::Verdict::fail) continue;
       kill.is_caught = true;
       const std::string place = result.finding.family + ": " + result.finding.name;
-      kill.is_named = kill.is_named ||
-                      (place.starts_with(wanted) && result.cause.find(fault.cause) != std::string::npos);
+      kill.is_named =
+          kill.is_named || (place.starts_with(wanted) && result.cause.find(fault.cause) != std::string::npos);
       kill.failures.push_back(std::move(result));
     }
   }

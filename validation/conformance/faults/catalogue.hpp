@@ -11,11 +11,11 @@
 namespace plumbline::conformance {
 
 struct Fault {
-  const char* name;    // "M4", unique
-  const char* seen;    // where it was
-  const char* wrong;   // what is wrong
-  const char* check;   // "operation: check" that must reject it (the beginning of the finding's name)
-  const char* cause;   // what the diagnosis must contain
+  const char* name;   // "M4", unique
+  const char* seen;   // where it was
+  const char* wrong;  // what is wrong
+  const char* check;  // "operation: check" that must reject it (the beginning of the finding's name)
+  const char* cause;  // what the diagnosis must contain
   plumbline_implementation implementation;  // ours with one function replaced
 };
 /// Faults that run and return. The first is none: our own implementation would be `plumbline_sh()`.

@@ -49,22 +49,22 @@ int geomerics_without_nan(std::int32_t n, const double* c, const double* normal,
 /// kChange(c) before our irradiance.
 template <auto kChange>
 plumbline_implementation irradiance_of() {
-  return ours_with(&I::irradiance,
-                   +[](std::int32_t n, const double* c, const double* normal, double* result) {
-                     std::vector<double> changed(c, c + count_of(n));
-                     kChange(n, changed);
-                     return plumbline_sh().irradiance(n, changed.data(), normal, result);
-                   });
+  return ours_with(
+      &I::irradiance, +[](std::int32_t n, const double* c, const double* normal, double* result) {
+        std::vector<double> changed(c, c + count_of(n));
+        kChange(n, changed);
+        return plumbline_sh().irradiance(n, changed.data(), normal, result);
+      });
 }
 /// kChange(E) after it.
 template <auto kChange>
 plumbline_implementation irradiance_then() {
-  return ours_with(&I::irradiance,
-                   +[](std::int32_t n, const double* c, const double* normal, double* result) {
-                     const int status = plumbline_sh().irradiance(n, c, normal, result);
-                     *result = kChange(*result);
-                     return status;
-                   });
+  return ours_with(
+      &I::irradiance, +[](std::int32_t n, const double* c, const double* normal, double* result) {
+        const int status = plumbline_sh().irradiance(n, c, normal, result);
+        *result = kChange(*result);
+        return status;
+      });
 }
 
 void flip_signs(std::vector<double>& c) {
@@ -77,32 +77,37 @@ void flip_signs(std::vector<double>& c) {
 std::vector<Fault> irradiance_faults() {
   using C = std::vector<double>;
   return {
-      {"M2", "SHforHLSL, BakingLab EvalSH4IrradianceGeomerics", "orthonormal c_00 where the mean radiance is meant",
-       "irradiance: uniform light", "2/sqrt(pi)", ours_with(&I::irradiance, geomerics_without_nan)},
-      {"M2n", "Probulator shEvaluateDiffuseL1Geomerics", "NaN when band 1 is 0", "irradiance: uniform light", "nan",
-       ours_with(&I::irradiance, geomerics)},
-      {"M3", "BakingLab before c3868af", "pi missing from one band's factor", "irradiance: response to each coefficient",
-       "band 2 is pi times too small", irradiance_by<[](int l) { return right_factor(l) / (l == 2 ? kPi : 1.0); }>()},
-      {"M5A", "FlaxEngine SH.hlsl", "A_1 = 2.095395 for 2.094395", "irradiance: response to each coefficient", "band 1",
-       irradiance_by<[](int l) { return l == 1 ? 2.095395 : right_factor(l); }>()},
+      {"M2", "SHforHLSL, BakingLab EvalSH4IrradianceGeomerics",
+       "orthonormal c_00 where the mean radiance is meant", "irradiance: uniform light", "2/sqrt(pi)",
+       ours_with(&I::irradiance, geomerics_without_nan)},
+      {"M2n", "Probulator shEvaluateDiffuseL1Geomerics", "NaN when band 1 is 0", "irradiance: uniform light",
+       "nan", ours_with(&I::irradiance, geomerics)},
+      {"M3", "BakingLab before c3868af", "pi missing from one band's factor",
+       "irradiance: response to each coefficient", "band 2 is pi times too small",
+       irradiance_by<[](int l) { return right_factor(l) / (l == 2 ? kPi : 1.0); }>()},
+      {"M5A", "FlaxEngine SH.hlsl", "A_1 = 2.095395 for 2.094395", "irradiance: response to each coefficient",
+       "band 1", irradiance_by<[](int l) { return l == 1 ? 2.095395 : right_factor(l); }>()},
       {"M17", "RTXGI-DDGI issues 15 and 60", "a stray 0.5", "irradiance: uniform light", "stray 1/2",
        irradiance_then<[](double e) { return 0.5 * e; }>()},
-      {"M20r", "Filament PR 1397", "sign and factors of band 1 wrong", "irradiance: response to each coefficient", "band 1",
+      {"M20r", "Filament PR 1397", "sign and factors of band 1 wrong",
+       "irradiance: response to each coefficient", "band 1",
        irradiance_by<[](int l) { return l == 1 ? -kPi / 3.0 : right_factor(l); }>()},
-      {"M24", "three.js issues 26668 and 16271", "pi times too bright", "irradiance: uniform light", "pi times too large",
-       irradiance_then<[](double e) { return kPi * e; }>()},
+      {"M24", "three.js issues 26668 and 16271", "pi times too bright", "irradiance: uniform light",
+       "pi times too large", irradiance_then<[](double e) { return kPi * e; }>()},
       {"M26a", "Babylon reading EXT_lights_image_based", "the coefficients are taken for irradiance's",
-       "irradiance: response to each coefficient", "the clamped cosine's factors", irradiance_by<[](int) { return 1.0; }>()},
+       "irradiance: response to each coefficient", "the clamped cosine's factors",
+       irradiance_by<[](int) { return 1.0; }>()},
       {"M26b", "flutter_scene reading EXT_lights_image_based", "x and y flipped: the other sign convention",
        "irradiance: response to each coefficient", "Condon-Shortley phase",
        irradiance_of<[](int, C& c) { flip_signs(c); }>()},
-      {"EPI", "Probulator, Filament's names", "E/pi under the name of irradiance", "irradiance: uniform light",
-       "1/pi applied twice, or E/pi where E is asked", irradiance_then<[](double e) { return e / kPi; }>()},
+      {"EPI", "Probulator, Filament's names", "E/pi under the name of irradiance",
+       "irradiance: uniform light", "1/pi applied twice, or E/pi where E is asked",
+       irradiance_then<[](double e) { return e / kPi; }>()},
       {"T9", "Filament PR 1397, before", "factors 1, 2/3, 1/4 with pi and a sign wrong in band 2",
        "irradiance: response to each coefficient", "band 2 is of the wrong sign",
        irradiance_by<[](int l) { return l == 2 ? -right_factor(l) : right_factor(l); }>()},
-      {"T10c", "A_l and c_l confused", "c_l = sqrt((2l + 1)/4 pi) A_l for A_l", "irradiance: response to each coefficient",
-       "the zonal coefficient c_l used for the factor A_l",
+      {"T10c", "A_l and c_l confused", "c_l = sqrt((2l + 1)/4 pi) A_l for A_l",
+       "irradiance: response to each coefficient", "the zonal coefficient c_l used for the factor A_l",
        irradiance_by<[](int l) { return std::sqrt((2.0 * l + 1.0) / (4.0 * kPi)) * right_factor(l); }>()},
       {"T12", "Godot PR 61910 to 95888", "8 where 2 pi belongs", "irradiance: uniform light", "1.273",
        irradiance_then<[](double e) { return e * 8.0 / (2.0 * kPi); }>()},
@@ -110,12 +115,13 @@ std::vector<Fault> irradiance_faults() {
        "irradiance: response to each coefficient", "holds", irradiance_of<[](int n, C& c) {
          if (2 < n) std::swap(c[5], c[6]);
        }>()},
-      {"T17", "three.js issue 26767, the other way", "negative irradiance set to 0", "irradiance: a light without extent",
-       "set to 0", irradiance_then<[](double e) { return std::max(0.0, e); }>()},
+      {"T17", "three.js issue 26767, the other way", "negative irradiance set to 0",
+       "irradiance: a light without extent", "set to 0",
+       irradiance_then<[](double e) { return std::max(0.0, e); }>()},
       {"HIDE", "max(0, NaN) is 0", "NaN turned into 0", "irradiance: non-finite input", "a finite answer",
        irradiance_then<[](double e) { return std::isfinite(e) ? e : 0.0; }>()},
-      {"FLT", "single precision under a double interface", "squares overflow at 1e30", "irradiance: scales", "extreme scales",
-       irradiance_then<[](double e) {
+      {"FLT", "single precision under a double interface", "squares overflow at 1e30", "irradiance: scales",
+       "extreme scales", irradiance_then<[](double e) {
          const auto f = static_cast<float>(e);
          return static_cast<double>(f * f / (f == 0.0F ? 1.0F : f));
        }>()},
@@ -149,44 +155,49 @@ std::vector<Fault> light_faults() {
       {"M1", "DirectXMath XMSHEvalHemisphereLight", "c_00 half as large again: exit radiance 1.25 for 1",
        "light hemisphere: promised exit radiance", "band 0 is 3/2 times too large",
        ours_with(&I::light_hemisphere, &hemisphere_with<[](int l) { return l == 0 ? 1.5 : 1.0; }>)},
-      {"M24h", "three.js issue 26668, HemisphereLightProbe", "pi times too bright", "light hemisphere: promised exit radiance",
-       "pi times too large", ours_with(&I::light_hemisphere, &hemisphere_with<[](int) { return kPi; }>)},
+      {"M24h", "three.js issue 26668, HemisphereLightProbe", "pi times too bright",
+       "light hemisphere: promised exit radiance", "pi times too large",
+       ours_with(&I::light_hemisphere, &hemisphere_with<[](int) { return kPi; }>)},
       {"S4a", "normalisation of another number of bands", "16 pi/17 for every number of bands",
        "light directional: y_lm(d)", "times too", facing_one(4.0)},
-      {"S4b", "unit declared but not applied", "a facing surface has exit radiance 0.34, not 1", "light directional: y_lm(d)",
-       "times", facing_one(1.0)},
+      {"S4b", "unit declared but not applied", "a facing surface has exit radiance 0.34, not 1",
+       "light directional: y_lm(d)", "times", facing_one(1.0)},
       {"S5a", "full and half angle", "the cone's full angle for its half angle", "light cone: caps", "",
-       ours_with(&I::light_cone,
-                 +[](std::int32_t n, const double* d, double angle, double* out) {
-                   return plumbline_sh().light_cone(n, d, 0.5 * angle, out);
-                 })},
-      {"S5b", "P_(l-1) - P_(l+1) in single precision", "a small disc cancels to nothing", "light cone: caps", "",
-       ours_with(&I::light_cone,
-                 +[](std::int32_t n, const double* d, double angle, double* out) {
-                   std::vector<double> zonal(static_cast<std::size_t>(n));
-                   const std::vector<double> p = sh::legendre(n + 1, std::cos(angle));
-                   for (int l = 0; l < n; ++l) {
-                     const auto i = static_cast<std::size_t>(l);
-                     const auto before = static_cast<float>(l == 0 ? 1.0 : p[i - 1]);
-                     const auto after = static_cast<float>(p[i + 1]);
-                     zonal[i] = std::sqrt(kPi / (2.0 * l + 1.0)) * static_cast<double>(before - after);
-                   }
-                   return plumbline_sh().rotate_zonal(n, zonal.data(), d, out);
-                 })},
+       ours_with(
+           &I::light_cone, +[](std::int32_t n, const double* d, double angle,
+                               double* out) { return plumbline_sh().light_cone(n, d, 0.5 * angle, out); })},
+      {"S5b", "P_(l-1) - P_(l+1) in single precision", "a small disc cancels to nothing", "light cone: caps",
+       "",
+       ours_with(
+           &I::light_cone,
+           +[](std::int32_t n, const double* d, double angle, double* out) {
+             std::vector<double> zonal(static_cast<std::size_t>(n));
+             const std::vector<double> p = sh::legendre(n + 1, std::cos(angle));
+             for (int l = 0; l < n; ++l) {
+               const auto i = static_cast<std::size_t>(l);
+               const auto before = static_cast<float>(l == 0 ? 1.0 : p[i - 1]);
+               const auto after = static_cast<float>(p[i + 1]);
+               zonal[i] = std::sqrt(kPi / (2.0 * l + 1.0)) * static_cast<double>(before - after);
+             }
+             return plumbline_sh().rotate_zonal(n, zonal.data(), d, out);
+           })},
       {"D5", "angle from the tangent", "sphere light with tan a = r/d", "light sphere: near and far", "",
-       ours_with(&I::light_sphere,
-                 +[](std::int32_t n, const double* centre, double radius, double* out) {
-                   const double distance = glm::length(vector_of(centre));
-                   const Vec3d d = vector_of(centre) / distance;
-                   const double direction[3] = {d.x, d.y, d.z};
-                   return plumbline_sh().light_cone(n, direction, std::atan2(radius, distance), out);
-                 })},
+       ours_with(
+           &I::light_sphere,
+           +[](std::int32_t n, const double* centre, double radius, double* out) {
+             const double distance = glm::length(vector_of(centre));
+             const Vec3d d = vector_of(centre) / distance;
+             const double direction[3] = {d.x, d.y, d.z};
+             return plumbline_sh().light_cone(n, direction, std::atan2(radius, distance), out);
+           })},
       {"DIR", "towards and away", "light directions point the other way", "light directional: y_lm(d)",
-       "odd bands are negated", ours_with(&I::light_directional,
-                                          +[](std::int32_t n, const double* d, double* out) {
-                                            const double away[3] = {-d[0], -d[1], -d[2]};
-                                            return plumbline_sh().light_directional(n, away, out);
-                                          })},
+       "odd bands are negated",
+       ours_with(
+           &I::light_directional,
+           +[](std::int32_t n, const double* d, double* out) {
+             const double away[3] = {-d[0], -d[1], -d[2]};
+             return plumbline_sh().light_directional(n, away, out);
+           })},
   };
 }
 
@@ -201,35 +212,35 @@ int unclamped(std::int32_t n, const double* normal, double* out) {
 
 std::vector<Fault> transfer_faults() {
   return {
-      {"L4", "gentle introduction, ProjectUnshadowed", "cosine not clamped: band 1 alone, at twice its weight",
-       "transfer unshadowed: clamped cosine", "band 0 is missing; band 1 is 2 times too large",
-       ours_with(&I::transfer_unshadowed, unclamped)},
-      {"L5", "gentle introduction; EnterprisePBR issue 13", "albedo without 1/pi", "transfer unshadowed: clamped cosine",
-       "1/pi is missing",
-       unary_then<&I::transfer_unshadowed, [](int n, double* out) {
-         scale_bands(n, out, 1, [](int) { return kPi; });
-       }>()},
-      {"T33", "ogre-next issue 190, Scotty3D issue 20", "divided by pi twice", "transfer unshadowed: clamped cosine",
-       "1/pi applied twice",
-       unary_then<&I::transfer_unshadowed, [](int n, double* out) {
-         scale_bands(n, out, 1, [](int) { return 1.0 / kPi; });
-       }>()},
-      {"T6b", "BakingLab issue 2", "light and transfer of different sign conventions", "relight: own transfer under own light",
-       "light and transfer use different signs",
-       unary_then<&I::transfer_unshadowed, [](int n, double* out) {
-         std::vector<double> c(out, out + count_of(n));
-         flip_signs(c);
-         std::copy(c.begin(), c.end(), out);
-       }>()},
-      {"DOT", "a loop that ends early", "the last coefficient is left out of the dot product", "relight: transfer . light",
-       "is missing",
-       ours_with(&I::relight,
-                 +[](std::int32_t n, const double* transfer, const double* light, double* result) {
-                   const int status = plumbline_sh().relight(n, transfer, light, result);
-                   const std::size_t last = count_of(n) - 1;
-                   *result -= transfer[last] * light[last];
-                   return status;
-                 })},
+      {"L4", "gentle introduction, ProjectUnshadowed",
+       "cosine not clamped: band 1 alone, at twice its weight", "transfer unshadowed: clamped cosine",
+       "band 0 is missing; band 1 is 2 times too large", ours_with(&I::transfer_unshadowed, unclamped)},
+      {"L5", "gentle introduction; EnterprisePBR issue 13", "albedo without 1/pi",
+       "transfer unshadowed: clamped cosine", "1/pi is missing",
+       unary_then<&I::transfer_unshadowed,
+                  [](int n, double* out) { scale_bands(n, out, 1, [](int) { return kPi; }); }>()},
+      {"T33", "ogre-next issue 190, Scotty3D issue 20", "divided by pi twice",
+       "transfer unshadowed: clamped cosine", "1/pi applied twice",
+       unary_then<&I::transfer_unshadowed,
+                  [](int n, double* out) { scale_bands(n, out, 1, [](int) { return 1.0 / kPi; }); }>()},
+      {"T6b", "BakingLab issue 2", "light and transfer of different sign conventions",
+       "relight: own transfer under own light", "light and transfer use different signs",
+       unary_then<&I::transfer_unshadowed,
+                  [](int n, double* out) {
+                    std::vector<double> c(out, out + count_of(n));
+                    flip_signs(c);
+                    std::copy(c.begin(), c.end(), out);
+                  }>()},
+      {"DOT", "a loop that ends early", "the last coefficient is left out of the dot product",
+       "relight: transfer . light", "is missing",
+       ours_with(
+           &I::relight,
+           +[](std::int32_t n, const double* transfer, const double* light, double* result) {
+             const int status = plumbline_sh().relight(n, transfer, light, result);
+             const std::size_t last = count_of(n) - 1;
+             *result -= transfer[last] * light[last];
+             return status;
+           })},
   };
 }
 
