@@ -87,9 +87,9 @@ typedef struct plumbline_convention {
   int32_t index_order; /* enum plumbline_index_order */
   int32_t sign;        /* enum plumbline_sign */
   int32_t norm;        /* enum plumbline_norm */
-  int32_t axes[3];  /* your textbook x, y, z are these world axes: 1 = x, 2 = y, 3 = z, negative = reversed.
-                                {1, 2, 3}: polar axis z, no swap. {3, 1, 2}: your z is the world's y (y polar).
-                                All 0: unknown */
+  /* Your textbook x, y, z are these world axes: 1 = x, 2 = y, 3 = z, negative = reversed. {1, 2, 3}: polar axis z, no
+   * swap. {3, 1, 2}: your z is the world's y (y polar). All 0: unknown. */
+  int32_t axes[3];
   int32_t quantity; /* enum plumbline_quantity */
   int32_t layout;   /* enum plumbline_layout */
 } plumbline_convention;
@@ -99,13 +99,11 @@ typedef struct plumbline_convention {
 /* What you compute in. Bounds are multiples of its epsilon. */
 enum plumbline_precision { PLUMBLINE_PRECISION_DOUBLE = 1, PLUMBLINE_PRECISION_FLOAT = 2 };
 
-/* What directional lights and cones promise. */
-enum plumbline_light_unit {
-  PLUMBLINE_LIGHT_PHYSICAL = 0, /* directional: irradiance 1 on a surface that faces it. Cone: radiance 1 */
-  PLUMBLINE_LIGHT_FACING_ONE =
-      1 /* both scaled so that a white Lambertian surface that faces the light has exit
-                                    radiance 1 when lit through the same number of bands (as D3DX documents) */
-};
+/* What directional lights and cones promise.
+ *  - PHYSICAL: a directional light has irradiance 1 on a surface that faces it, a cone has radiance 1
+ *  - FACING_ONE: both are scaled so that a white Lambertian surface that faces the light has exit radiance 1 when lit
+ *    through the same number of bands (as D3DX documents) */
+enum plumbline_light_unit { PLUMBLINE_LIGHT_PHYSICAL = 0, PLUMBLINE_LIGHT_FACING_ONE = 1 };
 
 /* Distributions of sample_directions. */
 enum plumbline_distribution {
