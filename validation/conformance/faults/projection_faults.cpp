@@ -13,12 +13,9 @@ double cosine_over_pi(int l) {
   return sh::clamped_cosine_factor(l) / kPi;
 }
 
-/// The nearest value a 16-bit float can hold: 11 bits, infinity from 65520 on.
+/// Infinity where a 16-bit float has it.
 double half(double value) {
-  if (std::abs(value) >= 65520.0) return std::copysign(std::numeric_limits<double>::infinity(), value);
-  int exponent = 0;
-  const double mantissa = std::frexp(value, &exponent);
-  return std::ldexp(std::nearbyint(mantissa * 2048.0) / 2048.0, exponent);
+  return std::abs(value) >= 65520.0 ? std::copysign(std::numeric_limits<double>::infinity(), value) : value;
 }
 
 double srgb_decoded(double v) {
