@@ -5,6 +5,7 @@
 #include "validation/conformance/plumbline_conformance.h"
 
 static int relight(int32_t bands, const double* transfer, const double* lighting, double* result) {
+  (void)bands, (void)transfer, (void)lighting, (void)result;
 #if defined(HOSTILE_CRASHES)
   volatile int* volatile nowhere = NULL;
   return *nowhere;
@@ -50,7 +51,7 @@ const plumbline_implementation* plumbline_conformance_entry(uint32_t host_versio
   };
   (void)host_version;
 #if defined(HOSTILE_WRONG_SIZE)
-  implementation.struct_size -= 8;
+  implementation.struct_size = (uint32_t)sizeof(plumbline_implementation) - 8;
 #elif defined(HOSTILE_WRONG_VERSION)
   implementation.abi_version = 99;
 #elif defined(HOSTILE_NULL)
