@@ -23,8 +23,8 @@ static int relight(int32_t bands, const double* transfer, const double* lighting
 #if defined(HOSTILE_WRITES_OUTSIDE)
   result[1] = sum;
 #endif
-  return 0;
 #endif
+  return 0;
 }
 
 #if defined(HOSTILE_CRASHES_ON_LOAD)
