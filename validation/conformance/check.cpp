@@ -166,6 +166,22 @@ Judged judged_values(const Context& context, const Label& label, const Pairs& pa
   return judged(context, label, error, bound, cause);
 }
 
+Judged judged_directions(const Context& context, const Label& label, const std::vector<Vec3d>& directions,
+                         const Pairs& pairs, double bound, double tolerance) {
+  Judged result = judged_coefficients(context, label, pairs, bound, tolerance);
+  if (result.finding.verdict == checks::Verdict::pass || !std::isfinite(result.finding.measured))
+    return result;
+  constexpr double kNearPole = 0.99;
+  Pairs elsewhere;
+  for (std::size_t k = 0; k < directions.size(); ++k)
+    if (std::abs(directions[k].z) < kNearPole) elsewhere.add(pairs.expected[k], pairs.measured[k]);
+  if (!context.ruler.accepts(elsewhere.error(context.ruler), bound)) return result;
+  result.cause =
+      fmt::format("digits are lost near the poles and only there: error {:.2g}", result.finding.measured);
+  result.finding.detail = result.cause;
+  return result;
+}
+
 double rounding(const Context& context, int bands) {
   return 4.0 * bands * bands * std::sqrt((2.0 * bands - 1.0) / (4.0 * kPi)) * context.subject.epsilon();
 }

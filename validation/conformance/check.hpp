@@ -97,6 +97,12 @@ struct Label {
 [[nodiscard]] Judged judged_values(const Context& context, const Label& label, const Pairs& pairs,
                                    double bound, double tolerance);
 
+/// Functions of a direction, one pair for each: where the errors are within 8 degrees of the poles alone, the cause says
+/// so; else as judged_coefficients().
+[[nodiscard]] Judged judged_directions(const Context& context, const Label& label,
+                                       const std::vector<Vec3d>& directions, const Pairs& pairs, double bound,
+                                       double tolerance);
+
 /// What rounding may do to values of n bands: 4 n^2 roundings of the largest value sqrt((2n - 1)/4 pi). n steps of a
 /// recurrence with up to 3 roundings each, and the rounding of the direction, all amplified by the functions' slope,
 /// at most n times their size.

@@ -476,6 +476,7 @@ std::string diagnose(const Evidence& e) {
   if (e.expected.empty() || e.expected.front().empty()) return "nothing to compare";
   if (const Cause cause = not_numbers(e)) return *cause;
   if (const Cause cause = all_zero(e)) return *cause;
+  if (explains(e.expected, e)) return "a small error, " + worst_place(e);
   if (const Cause cause = one_factor(e)) return *cause;
   if (const Cause cause = by_maps(e, sign_and_order_maps())) return *cause;
   if (const Cause cause = by_bands(e)) return *cause;

@@ -112,9 +112,9 @@ std::vector<Judged> values(const Context& context) {
         rows(must(context.subject.basis(bands, directions), "unit directions"), size_of(bands));
     Pairs pairs;
     for (std::size_t k = 0; k < directions.size(); ++k) pairs.add(truths::basis(bands, directions[k]), y[k]);
-    results.push_back(judged_coefficients(
-        context, {kBasis, "values and signs", "Definition in long double; rounding", bands}, pairs,
-        rounding(context, bands), 1e-5));
+    results.push_back(
+        judged_directions(context, {kBasis, "values and signs", "Definition in long double; rounding", bands},
+                          directions, pairs, rounding(context, bands), 1e-5));
   }
   return results;
 }
@@ -150,6 +150,7 @@ std::vector<Judged> poles(const Context& context) {
   double worst = 0.0;
   double worst_angle = 0.0;
   int worst_m = 0;
+  char worst_side = '+';
   for (double angle = 1e-1; angle > 0.5e-8; angle *= 0.1) {
     for (const double side : {1.0, -1.0}) {
       const Vec3d d(0.6 * std::sin(angle), 0.8 * std::sin(angle), side * std::cos(angle));
@@ -168,6 +169,7 @@ std::vector<Judged> poles(const Context& context) {
           worst = next;
           worst_angle = angle;
           worst_m = m;
+          worst_side = side > 0.0 ? '+' : '-';
         }
       }
     }
@@ -175,9 +177,9 @@ std::vector<Judged> poles(const Context& context) {
   // 4 n^2 roundings; relative, because x and y are given to full precision there.
   const double bound = 4.0 * bands * bands * context.subject.epsilon();
   const std::string cause = fmt::format(
-      "digits of m > 0 are lost near the poles: {:.1g} of the pair m = +-{} at {:.0e} rad from the pole "
-      "(sin theta taken from 1 - z^2?)",
-      worst, worst_m, worst_angle);
+      "digits of m > 0 are lost near the poles: {:.1g} of the pair m = +-{} at {:.0e} rad from {}z "
+      "(sin theta from 1 - z^2, or from an angle close to pi?)",
+      worst, worst_m, worst_angle, worst_side);
   return {judged(context,
                  {kBasis, "digits near the poles", "Relative to each pair +-m: 4 n^2 roundings", bands},
                  worst, bound, cause)};

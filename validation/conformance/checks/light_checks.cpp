@@ -42,12 +42,13 @@ Values cone(int bands, const Vec3d& d, double half_angle) {
 
 std::vector<Judged> directional(const Context& context) {
   Pairs pairs;
-  for (const Vec3d& d : checks::probe_directions())
+  const std::vector<Vec3d> directions = checks::probe_directions();
+  for (const Vec3d& d : directions)
     pairs.add(in_unit(context, truths::basis(context.bands, d), d),
               must(context.subject.light_directional(context.bands, d), "a unit direction"));
-  return {judged_coefficients(
-      context, {kDirectional, "y_lm(d)", "A pulse of the declared unit; rounding", context.bands}, pairs,
-      8.0 * pairs.scale() * rounding(context, context.bands), 1e-5)};
+  return {judged_directions(
+      context, {kDirectional, "y_lm(d)", "A pulse of the declared unit; rounding", context.bands}, directions,
+      pairs, 8.0 * pairs.scale() * rounding(context, context.bands), 1e-5)};
 }
 
 std::vector<Judged> cones(const Context& context) {

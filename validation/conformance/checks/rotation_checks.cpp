@@ -170,11 +170,12 @@ std::vector<Judged> zonal(const Context& context) {
   const int bands = context.bands;
   Pairs pairs;
   const Values z = truths::some_values(static_cast<std::size_t>(bands), 2);
-  for (const Vec3d& d : checks::probe_directions())
+  const std::vector<Vec3d> directions = checks::probe_directions();
+  for (const Vec3d& d : directions)
     pairs.add(truths::about_axis(z, d), must(context.subject.rotate_zonal(bands, z, d), "a unit axis"));
-  return {judged_coefficients(
+  return {judged_directions(
       context, {kZonal, "random lobes about every axis", "sqrt(4 pi/(2l + 1)) z_l y_lm; rounding", bands},
-      pairs, 8.0 * rounding(context, bands), 1e-5)};
+      directions, pairs, 8.0 * rounding(context, bands), 1e-5)};
 }
 
 bool has_rotate(const Implementation& i) {

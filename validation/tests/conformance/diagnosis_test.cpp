@@ -94,6 +94,11 @@ TEST(Diagnosis, SaysWhereTheNumbersAreNone) {
   EXPECT_EQ(cause_of([](Vector& v) { std::fill(v.begin(), v.end(), 0.0); }), "everything is 0");
 }
 
+TEST(Diagnosis, CallsASmallErrorSmall) {
+  EXPECT_TRUE(
+      cause_of([](Vector& v) { v[3] += 1e-9; }).starts_with("a small error, largest error at band 1, m = 1"));
+}
+
 TEST(Diagnosis, NeverClaimsACauseThatDoesNotExplainTheNumbers) {
   const std::string cause = cause_of([](Vector& v) {
     for (std::size_t i = 0; i < v.size(); ++i) v[i] = std::sin(100.0 * v[i] + static_cast<double>(i));

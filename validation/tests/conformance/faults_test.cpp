@@ -60,10 +60,9 @@ TEST(JudgeMutants, AComparisonBlindToNanLetsAFaultSurvive) {
 }
 
 TEST(JudgeMutants, AMetricThatSkipsInfinityLetsAFaultSurvive) {
-  constexpr Ruler kSkips{[](double so_far, double error) {
-                           return std::isinf(error) || error <= so_far ? so_far : error;
-                         },
-                         [](double error, double bound) { return error <= bound; }};
+  constexpr Ruler kSkips{
+      [](double so_far, double error) { return std::isinf(error) || error <= so_far ? so_far : error; },
+      [](double error, double bound) { return error <= bound; }};
   const Fault fault = fault_named("M23");
   EXPECT_TRUE(judge_fault(fault, kBands).is_named);
   EXPECT_FALSE(judge_fault(fault, kBands, kSkips).is_caught);
