@@ -41,7 +41,7 @@ constexpr std::array kFactors{NamedFactor{kPi, "pi"},
                               NamedFactor{4.0 / 3.0, "4/3"},
                               NamedFactor{kPi / 2.0, "pi/2"},
                               NamedFactor{2.0 * kPi / 3.0, "2 pi/3"},
-                              NamedFactor{kPi / 4.0, "pi/4"},
+                              NamedFactor{4.0 / kPi, "4/pi"},
                               NamedFactor{8.0, "8"},
                               NamedFactor{1.7320508075688772, "sqrt(3)"},
                               NamedFactor{2.0 / kSqrtPi, "2/sqrt(pi)"}};
@@ -238,6 +238,7 @@ std::vector<NamedMap> axis_maps(int bands) {
       std::array<int32_t, 3> axes = order;
       for (unsigned k = 0; k < 3; ++k)
         if ((negative >> k & 1U) != 0U) axes.at(k) = -axes.at(k);
+      if (axes == std::array<int32_t, 3>{1, 2, 3}) continue;
       std::copy(axes.begin(), axes.end(), convention.axes);
       const Border border(convention, bands);
       result.push_back({[border, bands](const std::vector<double>& v) { return border.to_theirs(bands, v); },
@@ -360,10 +361,24 @@ std::string list_of_bands(const std::vector<std::optional<double>>& factors, dou
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
+/// One wrong band among right ones: band 0, or one of at least three.
+bool is_one_band(const std::vector<std::optional<double>>& factors, double tolerance) {
+  std::size_t wrong = 0;
+  std::size_t known = 0;
+  for (const std::optional<double>& factor : factors) {
+    known += factor ? 1U : 0U;
+    wrong += factor && !is_near(*factor, 1.0, 2.0 * tolerance) ? 1U : 0U;
+  }
+  const bool is_first = factors[0] && !is_near(*factors[0], 1.0, 2.0 * tolerance);
+  return wrong == 1 && known > 1 && (is_first || known > 2) &&
+         !(factors[1] && is_near(*factors[1], -1.0, tolerance));
+}
+
 Cause by_bands(const Evidence& e) {
   const std::vector<std::optional<double>> factors = band_factors(e);
   if (!explains(with_band_factors(e, factors), e)) return std::nullopt;
   if (Cause window = window_cause(factors, e.tolerance)) return window;
+  if (is_one_band(factors, e.tolerance)) return list_of_bands(factors, std::max(1e-9, e.tolerance));
   for (const BandCause& cause : band_causes())
     if (agree(factors, cause, 1.0, e.tolerance)) return cause.text;
   if (factors[0]) {
@@ -480,9 +495,11 @@ std::string diagnose(const Evidence& e) {
   if (const Cause cause = one_factor(e)) return *cause;
   if (const Cause cause = by_maps(e, sign_and_order_maps())) return *cause;
   if (const Cause cause = by_bands(e)) return *cause;
-  if (const Cause cause = by_coefficients(e)) return *cause;
   const Evidence few = first_bands(e, 4);
-  if (const Cause cause = by_maps(few, axis_maps(few.bands))) return *cause;
+  if (!explains(few.expected, few)) {
+    if (const Cause cause = by_maps(few, axis_maps(few.bands))) return *cause;
+  }
+  if (const Cause cause = by_coefficients(e)) return *cause;
   return worst_place(e);
 }
 

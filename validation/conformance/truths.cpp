@@ -95,7 +95,7 @@ Vec3d lat_long_centre(int width, int height, double x, double y) {
   return {std::cos(phi) * std::sin(theta), std::cos(theta), std::sin(phi) * std::sin(theta)};
 }
 
-Values lat_long_texel(int bands, int width, int height, int x, int y) {
+Values lat_long_texel(int bands, int width, int height, double x, double y) {
   static const sh::GaussLegendre kRule = sh::gauss_legendre(10);
   Values sum(size_of(bands), 0.0);
   for (std::size_t i = 0; i < kRule.nodes.size(); ++i) {
@@ -115,7 +115,7 @@ Vec3d cube_direction(int face, double s, double t) {
   return glm::normalize(directions.at(static_cast<std::size_t>(face)));
 }
 
-Values cube_texel(int bands, int size, int face, int x, int y) {
+Values cube_texel(int bands, int size, int face, double x, double y) {
   static const sh::GaussLegendre kRule = sh::gauss_legendre(12);
   Values sum(size_of(bands), 0.0);
   for (std::size_t i = 0; i < kRule.nodes.size(); ++i) {

@@ -37,9 +37,9 @@ using Function = std::function<double(const Vec3d&)>;
 [[nodiscard]] Values composed(int bands, const Values& a, const std::function<double(double)>& g);
 
 /// integral of y_i over a texel of a lat-long image.
-[[nodiscard]] Values lat_long_texel(int bands, int width, int height, int x, int y);
+[[nodiscard]] Values lat_long_texel(int bands, int width, int height, double x, double y);
 /// integral of y_i over a texel of a cube map's face.
-[[nodiscard]] Values cube_texel(int bands, int size, int face, int x, int y);
+[[nodiscard]] Values cube_texel(int bands, int size, int face, double x, double y);
 /// Direction of the middle of a texel.
 [[nodiscard]] Vec3d lat_long_centre(int width, int height, double x, double y);
 [[nodiscard]] Vec3d cube_direction(int face, double s, double t);

@@ -56,6 +56,7 @@ double irradiance_of(const Context& context, const Values& coefficients, const V
 /// Response to each coefficient alone: A_l y_lm(n). A uniform light beside it keeps irradiance positive.
 std::vector<Judged> irradiance_kernel(const Context& context) {
   Pairs pairs;
+  Pairs unconvolved;
   for (const Vec3d& n : normals()) {
     Values response;
     Values dark(size_of(context.bands), 0.0);
@@ -67,10 +68,14 @@ std::vector<Judged> irradiance_kernel(const Context& context) {
       response.push_back(irradiance_of(context, c, n) - base);
     }
     pairs.add(convolved(truths::basis(context.bands, n)), response);
+    unconvolved.add(truths::basis(context.bands, n), response);
   }
-  return {judged_coefficients(
+  Judged result = judged_coefficients(
       context, {kIrradiance, "response to each coefficient", "A_l y_lm(n); rounding", context.bands}, pairs,
-      128.0 * rounding(context, context.bands), 1e-5)};
+      128.0 * rounding(context, context.bands), 1e-5);
+  if (!result.cause.empty() && unconvolved.error(context.ruler) <= 1e-4)
+    result.cause = result.finding.detail = "the clamped cosine's factors (pi, 2 pi/3, pi/4) are missing";
+  return {result};
 }
 
 std::vector<Judged> irradiance_uniform(const Context& context) {

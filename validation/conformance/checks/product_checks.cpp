@@ -169,7 +169,7 @@ std::vector<Judged> exp_small(const Context& context) {
   // The second order: half of the square, whose norm is at most |f|^2 max|y| n.
   return {judged_coefficients(
       context, {kExp, "small functions", "First order is exact: error <= |f|^2", context.bands}, pairs,
-      size * size, 0.02)};
+      size * size, 0.002)};
 }
 
 /// Error norm of an answer over the error norm of the first-order one.

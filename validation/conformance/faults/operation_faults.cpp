@@ -144,7 +144,7 @@ std::vector<Fault> product_faults() {
              return series<1, false>(n, in, out, 1.0 / std::sqrt(4.0 * kPi));
            })},
       {"M14c", "shexp-demo, PS-9 path", "g[i] += a[j]: an index slips", "exponential: small functions",
-       "holds",
+       "band",
        ours_with(
            &I::exponential,
            +[](std::int32_t n, const double* in, double* out) {

@@ -31,7 +31,7 @@ std::vector<Fault> scale_faults() {
       {"M16", "Capsaicin issue 21", "sum over size^2 texels scaled by 1/size, no solid angle",
        "project lat-long: radiance 1", "grows with the resolution",
        lat_long_by<[](int x, int y, int w, int h, const float* rgb) {
-         return TexelSample{truths::lat_long_centre(w, h, x, y), row_weight(w, h, y) * w / 64.0,
+         return TexelSample{truths::lat_long_centre(w, h, x, y), row_weight(w, h, y) * w / 50.0,
                             pixel(rgb, w, x, y)};
        }>()},
       {"M18", "ands/spherical_harmonics_playground issue 2", "32/N instead of 4 pi over the sum of weights",
@@ -92,8 +92,8 @@ std::vector<Fault> lat_long_faults() {
          return TexelSample{truths::lat_long_centre(w, h, x, y), 2.0 * kPi / w * kPi / h,
                             pixel(rgb, w, x, y)};
        }>()},
-      {"T20b", "goliath issue 12", "sin theta applied twice", "project lat-long: radiance 1", "pi/4",
-       lat_long_by<[](int x, int y, int w, int h, const float* rgb) {
+      {"T20b", "goliath issue 12", "sin theta applied twice", "project lat-long: radiance 1",
+       "4/pi times too small", lat_long_by<[](int x, int y, int w, int h, const float* rgb) {
          const double sine = std::sin(kPi * (y + 0.5) / h);
          return TexelSample{truths::lat_long_centre(w, h, x, y), row_weight(w, h, y) * sine,
                             pixel(rgb, w, x, y)};
@@ -106,13 +106,13 @@ std::vector<Fault> lat_long_faults() {
          return sample;
        }>()},
       {"T22a", "pbrt-v3 issue 62", "directions off by half a texel", "project lat-long: one bright texel",
-       "another function", lat_long_by<[](int x, int y, int w, int h, const float* rgb) {
+       "off by half a texel", lat_long_by<[](int x, int y, int w, int h, const float* rgb) {
          TexelSample sample = right_sample(x, y, w, h, rgb);
          sample.direction = truths::lat_long_centre(w, h, x - 0.5, std::max(0.0, y - 0.5));
          return sample;
        }>()},
       {"T22b", "mitsuba2 issue 173", "the last column repeats the one before it",
-       "project lat-long: one bright texel", "missing",
+       "project lat-long: one bright texel", "only at",
        lat_long_by<[](int x, int y, int w, int h, const float* rgb) {
          TexelSample sample = right_sample(x, y, w, h, rgb);
          sample.radiance = pixel(rgb, w, x == w - 1 ? std::max(0, w - 2) : x, y);
@@ -186,7 +186,7 @@ std::vector<Fault> cube_faults() {
          sample.direction = right_cube_sample(face, x, size - 1 - y, size, rgb).direction;
          return sample;
        }>()},
-      {"M19c", "lovr PR 644", "missing half texel", "project cube: one bright texel", "another function",
+      {"M19c", "lovr PR 644", "missing half texel", "project cube: one bright texel", "off by half a texel",
        cube_by<[](int face, int x, int y, int size, const float* rgb) {
          TexelSample sample = right_cube_sample(face, x, y, size, rgb);
          sample.direction = truths::cube_direction(face, 2.0 * x / size - 1.0, 2.0 * y / size - 1.0);
@@ -210,7 +210,7 @@ std::vector<Fault> cube_faults() {
       {"T18", "Capsaicin issue 21", "1/size for 1/size^2 in the sum", "project cube: radiance 1",
        "grows with the resolution", cube_by<[](int face, int x, int y, int size, const float* rgb) {
          TexelSample sample = right_cube_sample(face, x, y, size, rgb);
-         sample.weight *= size / 16.0;
+         sample.weight *= size / 12.0;
          return sample;
        }>()},
   };
