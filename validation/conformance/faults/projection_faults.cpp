@@ -108,7 +108,7 @@ std::vector<Fault> lat_long_faults() {
       {"T22a", "pbrt-v3 issue 62", "directions off by half a texel", "project lat-long: one bright texel",
        "off by half a texel", lat_long_by<[](int x, int y, int w, int h, const float* rgb) {
          TexelSample sample = right_sample(x, y, w, h, rgb);
-         sample.direction = truths::lat_long_centre(w, h, x - 0.5, std::max(0.0, y - 0.5));
+         sample.direction = truths::lat_long_centre(w, h, x - 0.5, y);
          return sample;
        }>()},
       {"T22b", "mitsuba2 issue 173", "the last column repeats the one before it",
