@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 
@@ -48,6 +49,8 @@ void write_all(int file, const char* bytes, std::size_t count) {
   const int nowhere = ::open("/dev/null", O_RDWR);
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, stream);
   for (const int number : {SIGSEGV, SIGABRT, SIGFPE, SIGILL, SIGBUS, SIGPIPE}) ::signal(number, SIG_DFL);
+  // A library that calls exit(): before the destructors of a process whose threads were not forked.
+  ::on_exit([](int status, void*) { ::_exit(status); }, nullptr);
   const std::string text = work();
   const std::uint64_t length = text.size();
   char header[kHeader];

@@ -146,6 +146,9 @@ std::vector<Judged> addition_theorem(const Context& context) {
 
 /// Near the poles sin^m theta is tiny: a pair +-m must keep its digits, not only its absolute size.
 std::vector<Judged> poles(const Context& context) {
+  // Another polar axis: its poles are elsewhere, and turning the answers to ours costs the digits in question.
+  const auto& axes = context.subject.border().convention().axes;
+  if (axes[2] != 0 && std::abs(axes[2]) != 3) return {};
   const int bands = context.bands;
   double worst = 0.0;
   double worst_angle = 0.0;
