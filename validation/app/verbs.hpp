@@ -16,6 +16,7 @@ void register_compare(CLI::App& app, Action& chosen);
 void register_validate(CLI::App& app, Action& chosen);
 void register_identify(CLI::App& app, Action& chosen);
 void register_conventions(CLI::App& app, Action& chosen);
+void register_conform(CLI::App& app, Action& chosen);
 void register_scenes(CLI::App& app, Action& chosen);
 
 }  // namespace plumbline::app
