@@ -14,6 +14,7 @@ void register_relight(CLI::App& app, Action& chosen);
 void register_inspect(CLI::App& app, Action& chosen);
 void register_compare(CLI::App& app, Action& chosen);
 void register_validate(CLI::App& app, Action& chosen);
+void register_bench(CLI::App& app, Action& chosen);
 void register_scenes(CLI::App& app, Action& chosen);
 
 }  // namespace plumbline::app
