@@ -164,13 +164,12 @@ int run(const Options& options) {
   if (!options.reference.empty() && *options.has_reference_spp)
     throw InputError("--reference and --reference-spp exclude each other");
   Subject subject = subject_of(options);
-  const study::Plan plan_before = plan_of(options, subject);  // options are wrong before a folder is made
+  study::Plan plan = plan_of(options, subject);
   const study::Task task = task_of(options, subject);
-  study::Plan plan = plan_before;
-  plan.environment = subject.environment_name;
+  plan.environment = subject.environment_name;  // now with what became of it
   const std::filesystem::path folder(options.output);
   require_destinations({{"--json", options.json, ""}});
-  study::require_methods(task, plan);
+  study::require_possible(task, plan);
   make_folder(folder, "bench.html");
   const study::Outcome outcome = study::run_study(task, plan);
   report::Report page = study::make_report(task, plan, outcome);

@@ -51,7 +51,7 @@ class Work {
   double done_ = 0.0;
 };
 
-void read_reference(const Task& task, const Plan& plan, Outcome& outcome) {
+LoadedReference read_reference(const Task& task, const Plan& plan) {
   LoadedReference loaded = load_reference(*plan.reference_file);
   const image::Image& image = loaded.reference.a;
   if (image.width != task.width || image.height != task.height) {
@@ -66,9 +66,7 @@ void read_reference(const Task& task, const Plan& plan, Outcome& outcome) {
     throw InputError(fmt::format("{}: made for another task: {} is {}, expected {}",
                                  plan.reference_file->string(), name, found->second, own.at(name)));
   }
-  outcome.reference = std::move(loaded.reference);
-  outcome.renderers = std::move(loaded.renderers);
-  outcome.has_reference_halves = loaded.has_halves;
+  return loaded;
 }
 
 void make_long_images(const std::vector<Method>& methods, const Plan& plan, Work& work, Outcome& outcome) {
@@ -115,9 +113,14 @@ std::optional<Agreement> agreement_of(const Plan& plan, const std::map<std::stri
 }  // namespace
 
 Outcome run_study(const Task& task, const Plan& plan) {
-  require_methods(task, plan);
+  require_possible(task, plan);
   Outcome outcome;
-  if (plan.reference_file) read_reference(task, plan, outcome);  // before any work
+  if (plan.reference_file) {
+    LoadedReference loaded = read_reference(task, plan);
+    outcome.reference = std::move(loaded.reference);
+    outcome.renderers = std::move(loaded.renderers);
+    outcome.has_reference_halves = loaded.has_halves;
+  }
   const std::vector<Method> methods = available(task, plan, outcome.skipped);
   Work work(plan, methods.size());
   work.add(0.0);
@@ -128,7 +131,8 @@ Outcome run_study(const Task& task, const Plan& plan) {
   return outcome;
 }
 
-void require_methods(const Task& task, const Plan& plan) {
+void require_possible(const Task& task, const Plan& plan) {
+  if (plan.reference_file) (void)read_reference(task, plan);
   std::string reason;
   for (const std::string& name : plan.methods) {
     const std::string one = find_method(name).reason_against(task);

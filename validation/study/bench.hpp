@@ -52,8 +52,8 @@ struct Outcome {
 /// @throws InputError for an unknown method, when no method is there, or for a reference file of another size or task.
 [[nodiscard]] Outcome run_study(const Task& task, const Plan& plan);
 
-/// Throws what run_study would throw for its methods, before any work.
-void require_methods(const Task& task, const Plan& plan);
+/// Throws what run_study would throw, before any work.
+void require_possible(const Task& task, const Plan& plan);
 
 /// What marks a reference as made for this task.
 [[nodiscard]] std::map<std::string, std::string> reference_attributes(const Task& task, const Plan& plan);
