@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kSkyWidth = 1024;
 constexpr int kSkyHeight = 512;
-constexpr int kSubsamples = 8;  // along each side of a texel: a sun of half a degree covers a texel or two
+constexpr int kSubsamples = 4;  // along each side of a texel: a sun of half a degree covers one or two
 
 integrate::RenderResult trace(const Task& task, int spp, std::uint64_t seed, bool has_halves) {
   integrate::RenderSettings settings;
