@@ -203,7 +203,8 @@ checks::Finding reference_finding(const Outcome& outcome, const std::vector<Budg
   checks::Finding finding;
   finding.family = "reference";
   finding.name = "own relMSE over the least relMSE measured";
-  finding.measured = own_relmse(outcome.reference) / least;
+  const double own = own_relmse(outcome.reference);
+  finding.measured = own == 0.0 ? 0.0 : own / least;
   finding.bound = 0.25;
   const bool is_good = finding.measured >= 0.0 && finding.measured <= finding.bound;
   finding.verdict =

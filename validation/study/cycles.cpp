@@ -205,7 +205,11 @@ class Blender {
         reply.values = Json::parse(line.substr(std::string(kReply).size()), nullptr, false);
         break;
       }
-      if (line.find_first_not_of(' ') != std::string::npos) last = line;
+      // The last error that Python named, else the last line.
+      const bool is_error = line.find("Error: ") != std::string::npos;
+      if (is_error ||
+          (line.find_first_not_of(' ') != std::string::npos && last.find("Error: ") == std::string::npos))
+        last = line;
     }
     std::free(text);
     if (!reply.values.is_object()) throw InputError(fmt::format("cycles: Blender ended too early: {}", last));

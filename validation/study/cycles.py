@@ -13,6 +13,7 @@ import sys
 import time
 
 import bpy
+import numpy
 from mathutils import Matrix, Vector
 
 
@@ -25,6 +26,9 @@ def say(**values):
 
 
 def load_mesh(job):
+    # Blender 3.4's glTF importer still says numpy.bool, which NumPy 1.24 (both in Debian 12) has no more.
+    if 'bool' not in vars(numpy):
+        numpy.bool = bool
     bpy.ops.wm.read_factory_settings(use_empty=True)
     shading = 'NORMALS' if job['has_smooth_normals'] else 'FLAT'
     bpy.ops.import_scene.gltf(filepath=job['scene'], import_shading=shading, merge_vertices=False)
