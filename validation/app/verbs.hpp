@@ -17,6 +17,7 @@ void register_validate(CLI::App& app, Action& chosen);
 void register_identify(CLI::App& app, Action& chosen);
 void register_conventions(CLI::App& app, Action& chosen);
 void register_conform(CLI::App& app, Action& chosen);
+void register_bench(CLI::App& app, Action& chosen);
 void register_scenes(CLI::App& app, Action& chosen);
 
 }  // namespace plumbline::app
