@@ -32,8 +32,15 @@ class EmitterTable {
   [[nodiscard]] double pdf(std::uint32_t triangle, float distance, float cos_emitter) const;
 
  private:
-  const scene::Scene* scene_;
-  std::vector<std::uint32_t> triangles_;
+  /// One emissive triangle, ready to be sampled.
+  struct Emitter {
+    Vec3 corners[3];
+    Vec3 normal{0.0F};  // geometric, unit
+    Rgb radiance{0.0F};
+    bool is_double_sided = false;
+    double density = 0.0;  // per area
+  };
+  std::vector<Emitter> emitters_;
   std::vector<double> cumulative_;  // of area x brightness, ends at total_
   std::vector<double> density_;     // per area, one per triangle of the scene; empty when nothing emits
   double total_ = 0.0;
