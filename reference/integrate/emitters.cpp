@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/integrate/emissive_primitives.hpp"
+
 namespace plumbline::integrate {
 namespace {
 
@@ -22,18 +24,36 @@ EmitterTable::EmitterTable(const scene::Scene& scene) : scene_(&scene) {
     if (!(weight > 0.0)) continue;
     if (density_.empty()) density_.resize(scene.triangles.size(), 0.0);
     total_ += weight;
-    triangles_.push_back(t);
+    surfaces_.push_back(t);
     cumulative_.push_back(total_);
     density_[t] = brightness;
   }
+  const auto triangles = static_cast<std::uint32_t>(scene.triangles.size());
+  for (std::uint32_t i = 0; i < scene::primitive_count(scene); ++i) {
+    const double weight = primitive_weight(scene, triangles + i);
+    if (!(weight > 0.0)) continue;
+    if (primitives_.empty()) primitives_.resize(scene::primitive_count(scene), 0.0);
+    total_ += weight;
+    surfaces_.push_back(triangles + i);
+    cumulative_.push_back(total_);
+    primitives_[i] = weight;
+  }
   for (double& density : density_) density /= total_;
+  for (double& probability : primitives_) probability /= total_;
 }
 
 // Area density -> solid angle density: p_w = p_A d^2 / cos.
 double EmitterTable::pdf(std::uint32_t triangle, float distance, float cos_emitter) const {
-  if (triangle >= density_.size() || !(cos_emitter > 0.0F)) return 0.0;
+  if (density_.empty() || !(cos_emitter > 0.0F)) return 0.0;
   return density_[triangle] * static_cast<double>(distance) * static_cast<double>(distance) /
          static_cast<double>(cos_emitter);
+}
+
+double EmitterTable::primitive_pdf(std::uint32_t surface, const trace::SurfacePoint& point, float distance,
+                                   const Vec3& direction) const {
+  if (primitives_.empty()) return 0.0;
+  const double probability = primitives_[surface - scene_->triangles.size()];
+  return probability * integrate::primitive_pdf(*scene_, surface, point, distance, direction);
 }
 
 std::optional<EmitterSample> EmitterTable::sample(const Vec3& receiver, float pick, const Vec2& u) const {
@@ -41,7 +61,12 @@ std::optional<EmitterSample> EmitterTable::sample(const Vec3& receiver, float pi
   const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), target);
   const auto slot = static_cast<std::size_t>(std::min<std::ptrdiff_t>(
       found - cumulative_.begin(), static_cast<std::ptrdiff_t>(cumulative_.size()) - 1));
-  const std::uint32_t triangle = triangles_[slot];
+  const std::uint32_t triangle = surfaces_[slot];
+  if (triangle >= scene_->triangles.size()) {
+    std::optional<EmitterSample> sample = sample_primitive(*scene_, triangle, receiver, u);
+    if (sample) sample->pdf *= primitives_[triangle - scene_->triangles.size()];
+    return sample;
+  }
   // Uniform on the triangle: fold the unit square along its diagonal by the square root (Turk 1990).
   const float root = std::sqrt(u.x);
   const trace::Hit on_triangle{triangle, Vec2(root * (1.0F - u.y), root * u.y), 0.0F};
