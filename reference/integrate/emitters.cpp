@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/integrate/emissive_primitives.hpp"
+
 namespace plumbline::integrate {
 namespace {
 
@@ -15,7 +17,7 @@ double area(const scene::Scene& scene, std::uint32_t triangle) {
 
 }  // namespace
 
-EmitterTable::EmitterTable(const scene::Scene& scene) {
+EmitterTable::EmitterTable(const scene::Scene& scene) : scene_(&scene) {
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
     const scene::Material& material = scene.materials[scene.triangle_materials[t]];
     const double brightness = max_component(material.emission);
@@ -32,8 +34,19 @@ EmitterTable::EmitterTable(const scene::Scene& scene) {
                          material.is_double_sided,
                          brightness});
   }
+  const auto triangles = static_cast<std::uint32_t>(scene.triangles.size());
+  for (std::uint32_t i = 0; i < scene::primitive_count(scene); ++i) {
+    const double weight = primitive_weight(scene, triangles + i);
+    if (!(weight > 0.0)) continue;
+    if (primitives_.empty()) primitives_.resize(scene::primitive_count(scene), 0.0);
+    total_ += weight;
+    surfaces_.push_back(triangles + i);
+    cumulative_.push_back(total_);
+    primitives_[i] = weight;
+  }
   for (double& density : density_) density /= total_;
   for (Emitter& emitter : emitters_) emitter.density /= total_;
+  for (double& probability : primitives_) probability /= total_;
 }
 
 // Area density -> solid angle density: p_w = p_A d^2 / cos.
@@ -43,11 +56,24 @@ double EmitterTable::pdf(std::uint32_t triangle, float distance, float cos_emitt
          static_cast<double>(cos_emitter);
 }
 
+double EmitterTable::primitive_pdf(std::uint32_t surface, const trace::SurfacePoint& point, float distance,
+                                   const Vec3& direction) const {
+  if (primitives_.empty()) return 0.0;
+  const double probability = primitives_[surface - scene_->triangles.size()];
+  return probability * integrate::primitive_pdf(*scene_, surface, point, distance, direction);
+}
+
 std::optional<EmitterSample> EmitterTable::sample(const Vec3& receiver, float pick, const Vec2& u) const {
   const double target = static_cast<double>(pick) * total_;
   const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), target);
   const auto slot = static_cast<std::size_t>(std::min<std::ptrdiff_t>(
       found - cumulative_.begin(), static_cast<std::ptrdiff_t>(cumulative_.size()) - 1));
+  if (slot >= emitters_.size()) {
+    const std::uint32_t surface = surfaces_[slot - emitters_.size()];
+    std::optional<EmitterSample> sample = sample_primitive(*scene_, surface, receiver, u);
+    if (sample) sample->pdf *= primitives_[surface - scene_->triangles.size()];
+    return sample;
+  }
   const Emitter& emitter = emitters_[slot];
   // Uniform on the triangle: fold the unit square along its diagonal by the square root (Turk 1990).
   const float root = std::sqrt(u.x);

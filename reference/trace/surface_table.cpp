@@ -27,6 +27,11 @@ SurfaceTable::SurfaceTable(const scene::Scene& scene) : scene_(&scene) {
     record.material = scene.triangle_materials[t];
     record.is_flat = has_flat_normals(scene, corners, record.normal);
   }
+  for (std::size_t i = 0; i < scene::primitive_count(scene); ++i) {
+    const scene::Material& material =
+        scene::material_of(scene, static_cast<std::uint32_t>(records_.size() + i));
+    primitive_materials_.push_back(static_cast<std::uint32_t>(&material - scene.materials.data()));
+  }
   for (const scene::Material& material : scene.materials) {
     surfaces_.push_back({material.albedo, material.emission, material.is_double_sided,
                          material.albedo_texture < 0 && scene.vertex_colors.empty()});
@@ -34,6 +39,7 @@ SurfaceTable::SurfaceTable(const scene::Scene& scene) : scene_(&scene) {
 }
 
 SurfaceHit SurfaceTable::hit(const Hit& hit, const Vec3& ray_direction) const {
+  if (hit.triangle >= records_.size()) return surface_hit(*scene_, hit, ray_direction);
   const Record& record = records_[hit.triangle];
   const Vec3 weights(1.0F - hit.barycentrics.x - hit.barycentrics.y, hit.barycentrics.x, hit.barycentrics.y);
   SurfaceHit result{point_on_plane(record.corners, weights, record.normal), true};

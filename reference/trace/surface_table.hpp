@@ -10,7 +10,8 @@
 namespace plumbline::trace {
 
 /// Corners, plane and material of every triangle of a scene, laid out for the tracer: a hit touches one record of 64 bytes
-/// instead of indices, positions, normals and materials at seven places. The same results as surface_hit() of a scene.
+/// instead of indices, positions, normals and materials at seven places. The same results as surface_hit() of a scene. Spheres
+/// and discs, numbered after the triangles, are left to that.
 class SurfaceTable {
  public:
   explicit SurfaceTable(const scene::Scene& scene);
@@ -25,8 +26,9 @@ class SurfaceTable {
     bool is_double_sided = false;
     bool is_uniform = true;
   };
-  [[nodiscard]] const Surface& surface(std::uint32_t triangle) const {
-    return surfaces_[records_[triangle].material];
+  [[nodiscard]] const Surface& surface(std::uint32_t surface) const {
+    return surfaces_[surface < records_.size() ? records_[surface].material
+                                               : primitive_materials_[surface - records_.size()]];
   }
   /// Albedo at a hit.
   [[nodiscard]] Rgb albedo(const Hit& hit) const {
@@ -43,6 +45,7 @@ class SurfaceTable {
   };
   const scene::Scene* scene_;
   std::vector<Record> records_;
+  std::vector<std::uint32_t> primitive_materials_;  // of spheres and discs
   std::vector<Surface> surfaces_;
 };
 
