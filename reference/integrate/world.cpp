@@ -15,6 +15,7 @@ World::World(scene::Scene scene_value, light::Environment environment_value)
     : scene(std::move(scene_value)),
       environment(std::move(environment_value)),
       caster(scene),
+      surfaces(scene),
       emitters(scene),
       environment_sampler(environment),
       is_sky_sampled(!is_constant(environment)),

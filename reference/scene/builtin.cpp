@@ -6,6 +6,7 @@
 
 #include "reference/base/error.hpp"
 #include "reference/scene/cornell.hpp"
+#include "reference/scene/exact_scenes.hpp"
 #include "reference/scene/plaza.hpp"
 #include "reference/scene/shapes.hpp"
 #include "reference/scene/terrain.hpp"
@@ -109,7 +110,7 @@ struct Entry {
   Scene (*make)();
 };
 
-constexpr std::array<Entry, 8> kEntries = {{
+constexpr std::array<Entry, 12> kEntries = {{
     {"cornell", "32 triangles: the Cornell box from its measured data; area light, colour bleeding",
      make_cornell},
     {"sphere-on-plane",
@@ -129,6 +130,15 @@ constexpr std::array<Entry, 8> kEntries = {{
      "20000 triangles: hills, to see how costs grow; terrain:CELLS has 2 x CELLS^2 (terrain:2237: ten "
      "million)",
      make_small_terrain},
+    {"sphere-furnace", "exact sphere seen from inside: emission 1, albedo 0.8; radiance 5 everywhere",
+     [] { return make_sphere_room(); }},
+    {"bowl", "exact half sphere, open above, albedo 0.8; under `white` irradiance 2.618 everywhere",
+     [] { return make_bowl(); }},
+    {"concentric", "two exact spheres facing each other, the inner one shines; radiosity 4/3 and 2/3",
+     [] { return make_concentric_spheres(); }},
+    {"exact-sphere-on-plane",
+     "exact black sphere on a plane of 82 triangles; closed-form ambient occlusion under `white`",
+     [] { return make_sphere_over_plane(); }},
 }};
 
 }  // namespace

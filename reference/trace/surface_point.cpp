@@ -4,62 +4,40 @@
 #include <cmath>
 #include <limits>
 
+#include "reference/trace/analytic.hpp"
+
 namespace plumbline::trace {
 namespace {
 
-// How far a computed point may lie from its triangle, and a computed hit distance from the true one.
-// A convex combination of three vertices carries at most 7 roundings (Pharr, Jakob & Humphreys, "Physically
-// Based Rendering", 4th ed., section 6.8): |error| <= gamma_7 (|b0 p0| + |b1 p1| + |b2 p2|) in each
-// component. The query rounds again, by a similar amount in the vertices' differences to the origin. Sixteen
-// units of relative error cover both; the bound scales with the coordinates alone, so a scene scaled by any
-// factor behaves the same.
-constexpr float kRelativeError = 8.0F * std::numeric_limits<float>::epsilon();
-
 constexpr float kVertexInset = 1e-3F;
-
-// The largest component, not the one along the normal: on a plane through the origin that would be 0, while the query's
-// rounding is that of the other coordinates.
-float clearance(const Vec3& magnitude) {
-  return kRelativeError * max_component(magnitude) + std::numeric_limits<float>::min();
-}
-
-Vec3 interpolated_normal(const scene::Scene& scene, const glm::uvec3& corners, const Vec3& weights) {
-  const Vec3 sum = weights.x * scene.normals[corners.x] + weights.y * scene.normals[corners.y] +
-                   weights.z * scene.normals[corners.z];
-  return sum;
-}
 
 SurfacePoint point_on_triangle(const scene::Scene& scene, std::uint32_t triangle, const Vec3& weights) {
   const glm::uvec3 corners = scene.triangles[triangle];
-  const Vec3 a = weights.x * scene.positions[corners.x];
-  const Vec3 b = weights.y * scene.positions[corners.y];
-  const Vec3 c = weights.z * scene.positions[corners.z];
-  SurfacePoint point;
-  point.position = a + b + c;
-  point.geometric_normal = scene::geometric_normal(scene, triangle);
-  point.clearance = clearance(glm::abs(a) + glm::abs(b) + glm::abs(c));
-  const Vec3 normal = interpolated_normal(scene, corners, weights);
-  const float length = glm::length(normal);
-  // Opposite vertex normals can cancel; the plane's own normal is then the only one there is.
-  point.shading_normal = length > 1e-6F ? normal / length : point.geometric_normal;
+  const Vec3 positions[3] = {scene.positions[corners.x], scene.positions[corners.y],
+                             scene.positions[corners.z]};
+  SurfacePoint point = point_on_plane(positions, weights, scene::geometric_normal(scene, triangle));
+  point.shading_normal = shading_normal(scene, corners, weights, point.geometric_normal);
   return point;
 }
 
 }  // namespace
 
-Vec3 ray_origin(const SurfacePoint& point, const Vec3& direction) {
-  const float side = glm::dot(direction, point.geometric_normal) >= 0.0F ? 1.0F : -1.0F;
-  return point.position + side * point.clearance * point.geometric_normal;
+Vec3 shading_normal(const scene::Scene& scene, const glm::uvec3& corners, const Vec3& weights,
+                    const Vec3& geometric) {
+  const Vec3 sum = weights.x * scene.normals[corners.x] + weights.y * scene.normals[corners.y] +
+                   weights.z * scene.normals[corners.z];
+  const float length = glm::length(sum);
+  // Opposite vertex normals can cancel; the plane's own normal is then the only one there is.
+  return length > 1e-6F ? sum / length : geometric;
 }
 
 SurfaceHit surface_hit(const scene::Scene& scene, const Hit& hit, const Vec3& ray_direction) {
   const Vec3 weights(1.0F - hit.barycentrics.x - hit.barycentrics.y, hit.barycentrics.x, hit.barycentrics.y);
-  SurfaceHit result{point_on_triangle(scene, hit.triangle, weights), true};
-  if (glm::dot(result.point.geometric_normal, ray_direction) > 0.0F) {
-    result.is_front = false;
-    result.point.geometric_normal = -result.point.geometric_normal;
-    result.point.shading_normal = -result.point.shading_normal;
-  }
+  SurfaceHit result{hit.triangle < scene.triangles.size()
+                        ? point_on_triangle(scene, hit.triangle, weights)
+                        : point_on_primitive(scene, hit.triangle, hit.barycentrics),
+                    true};
+  if (glm::dot(result.point.geometric_normal, ray_direction) > 0.0F) turn_around(result);
   return result;
 }
 
@@ -95,7 +73,7 @@ std::vector<SurfacePoint> vertex_points(const scene::Scene& scene) {
     Vec3 weights(kVertexInset / 3.0F);
     weights[best.corner] += 1.0F - kVertexInset;
     points[v] = point_on_triangle(scene, best.triangle, weights);
-    points[v].shading_normal = scene.normals[v];
+    points[v].shading_normal = glm::normalize(scene.normals[v]);
     if (glm::dot(points[v].geometric_normal, scene.normals[v]) < 0.0F) {
       points[v].geometric_normal = -points[v].geometric_normal;
     }
