@@ -56,7 +56,8 @@ void time_blocks(benchmark::State& state) {
     benchmark::DoNotOptimize(kMethod(bands, in, out));
     benchmark::ClobberMemory();
   }
-  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * kVectors));
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) *
+                          static_cast<std::int64_t>(kVectors));
 }
 BENCHMARK(time_blocks<sh::exponential_hybrid_blocks>)
     ->Name("sh_exponential_hybrid_blocks_f32")
