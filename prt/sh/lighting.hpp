@@ -44,7 +44,7 @@ enum class Window { none, hann, lanczos, gauss, laplacian };
 ///   for other kinks (two-lobes: below 1e-6 for up to 20 bands).
 ///
 /// Same bits for any number of threads (0 = all). Cost: O(texels bands) for lat-long, O(texels bands^2) for
-/// the others, and O(bands^4) for turning lat-long and analytic results into world axes.
+/// the others, and O(bands^3) for turning lat-long and analytic results into world axes.
 /// @throws InputError for an empty image, a non-finite texel (named), a matrix that is no rotation, or bands
 /// out of range
 [[nodiscard]] ShRgb project_radiance(const light::Environment& environment, int bands, int threads = 0);

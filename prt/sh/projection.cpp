@@ -7,6 +7,7 @@
 
 #include "prt/sh/lighting.hpp"
 #include "prt/sh/quadrature.hpp"
+#include "prt/sh/rotation.hpp"
 #include "prt/sh/texels.hpp"
 #include "prt/sh/zonal.hpp"
 #include "reference/base/error.hpp"
@@ -154,26 +155,17 @@ Coefficients project_grid(const Grid& grid, int bands, int threads) {
   });
 }
 
-/// Coefficients of g(R^-1 w) from those of g, R orthogonal (mirrors included): evaluated at the nodes of a
-/// rule that is exact for the degree, and projected again.
-Coefficients turned(const Coefficients& coefficients, int bands, const Matrix& to_world, int threads) {
-  if (to_world == Matrix(1.0)) return coefficients;
-  const std::vector<SphereNode> nodes = sphere_quadrature(bands);
-  const Basis<double> basis(bands);
-  const Matrix from_world = glm::transpose(to_world);
-  return sum_in_blocks(nodes.size(), bands, threads, [&](std::size_t k, Coefficients& sum) {
-    std::vector<double> values(size_of(bands));
-    const Vec3d d = glm::normalize(from_world * nodes[k].direction);
-    basis.evaluate(d.x, d.y, d.z, values);
-    RgbD value(0.0);
-    for (std::size_t i = 0; i < values.size(); ++i) value += values[i] * coefficients[i];
-    value *= nodes[k].weight;
-    basis.evaluate(nodes[k].direction.x, nodes[k].direction.y, nodes[k].direction.z, values);
-    for (std::size_t i = 0; i < values.size(); ++i) sum[i] += values[i] * value;
-  });
+/// Coefficients of g(M^-1 w) from those of g, M a rotation times the mirror y -> -y: that changes the sign of the sines
+/// (m < 0).
+Coefficients turned_mirror(Coefficients coefficients, int bands, const Matrix& to_world) {
+  for (int l = 1; l < bands; ++l) {
+    for (int m = -l; m < 0; ++m) coefficients[static_cast<std::size_t>(index(l, m))] *= -1.0;
+  }
+  const Matrix rotation(to_world[0], -to_world[1], to_world[2]);
+  return rotate(ShRgb{bands, std::move(coefficients)}, rotation).coefficients;
 }
 
-/// Grid frame (polar axis +Y, azimuth from +X to +Z) to environment frame. A mirror, which is no matter here.
+/// Grid frame (polar axis +Y, azimuth from +X to +Z) to environment frame. A mirror.
 Matrix grid_to_environment() {
   return Matrix(Vec3d(1.0, 0.0, 0.0), Vec3d(0.0, 0.0, 1.0), Vec3d(0.0, 1.0, 0.0));
 }
@@ -276,8 +268,8 @@ Coefficients project(const light::LatLongSky& sky, const Task& task) {
   grid.read = [&](std::size_t row, std::span<Rgb> radiance) {
     std::copy_n(sky.image.pixels.begin() + static_cast<std::ptrdiff_t>(row * width), width, radiance.begin());
   };
-  return turned(project_grid(grid, task.bands, task.threads), task.bands,
-                task.rotation * grid_to_environment(), task.threads);
+  return turned_mirror(project_grid(grid, task.bands, task.threads), task.bands,
+                       task.rotation * grid_to_environment());
 }
 
 // Rows are Gauss nodes in cos(theta) over each hemisphere on its own, because skies jump at the horizon.
@@ -306,8 +298,8 @@ Coefficients project(const light::AnalyticSky& sky, const Task& task) {
       radiance[static_cast<std::size_t>(column)] = value;
     }
   };
-  return turned(project_grid(grid, task.bands, task.threads), task.bands,
-                task.rotation * grid_to_environment(), task.threads);
+  return turned_mirror(project_grid(grid, task.bands, task.threads), task.bands,
+                       task.rotation * grid_to_environment());
 }
 
 /// Appends the nodes of a rectangle of the image.

@@ -48,38 +48,40 @@ Vec3d direction(std::size_t k) {
 // y_lm = q_l^m(z) Re (-x - iy)^m with q_l = a_l z q_(l-1) - b_l q_(l-2) (basis.cpp). Divided by its leading
 // coefficient c_lm = q_m^m a_m+1 … a_l it is monic: p_l = z p_(l-1) - beta_l p_(l-2), beta_l = b_l / (a_l a_(l-1))
 // = ((l - 1)^2 - m^2) / ((2l - 1)(2l - 3)).
-void fill_recurrence(int bands, std::vector<float>& table) {
+void fill_recurrence(int bands, std::vector<double>& table) {
   for (int m = 0; m < bands; ++m) {
     double square = 1.0 / (4.0 * kPi);
     for (int k = 1; k <= m; ++k) square *= (2.0 * k + 1.0) / (2.0 * k);
     double scale = std::sqrt(m > 0 ? 2.0 * square : square) * (m % 2 == 1 ? -1.0 : 1.0);
     for (int l = m; l < bands; ++l) {
       if (l > m) scale *= std::sqrt((4.0 * l * l - 1.0) / (l * l - m * m));
-      table[static_cast<std::size_t>(rotator::kScales + index(l, m))] = static_cast<float>(scale);
-      table[static_cast<std::size_t>(rotator::kScales + index(l, -m))] = static_cast<float>(scale);
+      table[static_cast<std::size_t>(rotator::kScales + index(l, m))] = scale;
+      table[static_cast<std::size_t>(rotator::kScales + index(l, -m))] = scale;
       if (l < m + 2) continue;
       const double beta = ((l - 1.0) * (l - 1.0) - m * m) / ((2.0 * l - 1.0) * (2.0 * l - 3.0));
-      table[static_cast<std::size_t>(rotator::kRecurrence + index(l, m))] = static_cast<float>(beta);
+      table[static_cast<std::size_t>(rotator::kRecurrence + index(l, m))] = beta;
     }
   }
 }
 
-std::vector<float> sample_tables(int bands) {
-  std::vector<float> table(static_cast<std::size_t>(rotator::columns_start(bands)), 0.0F);
-  for (std::size_t k = 0; k < static_cast<std::size_t>(2 * bands - 1); ++k) {
-    for (int axis = 0; axis < 3; ++axis) {
-      table[static_cast<std::size_t>(axis * rotator::kSamples) + k] = static_cast<float>(direction(k)[axis]);
-    }
+std::vector<double> evaluation_constants(int bands) {
+  std::vector<double> table(rotator::kEvaluationSize, 0.0);
+  for (std::size_t k = 0; k < kDirections.size(); ++k) {
+    const Vec3d d = direction(k);
+    for (int axis = 0; axis < 3; ++axis)
+      table[static_cast<std::size_t>(axis * rotator::kSamples) + k] = d[axis];
   }
   fill_recurrence(bands, table);
+  return table;
+}
+
+std::vector<float> sample_columns(int bands) {
+  std::vector<float> table(static_cast<std::size_t>(rotator::columns_start(bands)), 0.0F);
   for (int l = 1; l < bands; ++l) {
     const int count = 2 * l + 1;
     Eigen::MatrixXd values(count, count);
     for (int k = 0; k < count; ++k) {
-      // The direction as the kernel has it, in float: its rounding is no error then.
-      const auto at = static_cast<std::size_t>(k);
-      const std::vector<double> y = evaluate_basis(
-          l + 1, Vec3d(table[at], table[at + rotator::kSamples], table[at + 2 * rotator::kSamples]));
+      const std::vector<double> y = evaluate_basis(l + 1, direction(static_cast<std::size_t>(k)));
       for (int m = -l; m <= l; ++m) values(k, m + l) = y[static_cast<std::size_t>(index(l, m))];
     }
     const Eigen::MatrixXd inverse = values.inverse();
@@ -178,12 +180,13 @@ void rotate_exchanged(int bands, const Real* tables, const glm::dmat3& matrix, c
   }
 }
 
-void rotate_sampled(int bands, const float* tables, const glm::dmat3& matrix, const float* in, float* out) {
-  std::array<float, 9> rows{};
+void rotate_sampled(int bands, const double* evaluation, const float* columns, const glm::dmat3& matrix,
+                    const float* in, float* out) {
+  std::array<double, 9> rows{};
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) rows[static_cast<std::size_t>(3 * i + j)] = static_cast<float>(matrix[j][i]);
+    for (int j = 0; j < 3; ++j) rows[static_cast<std::size_t>(3 * i + j)] = matrix[j][i];
   }
-  rotator::rotate_by_samples(bands, tables, rows.data(), in, out);
+  rotator::rotate_by_samples(bands, evaluation, columns, rows.data(), in, out);
 }
 
 }  // namespace
@@ -193,7 +196,8 @@ Rotator<Real>::Rotator(int bands) : bands_(bands) {
   require_bands(bands);
   if constexpr (std::is_same_v<Real, float>) {
     if (is_sampled<Real>(bands)) {
-      tables_ = sample_tables(bands);
+      evaluation_ = evaluation_constants(bands);
+      tables_ = sample_columns(bands);
       return;
     }
   }
@@ -211,7 +215,8 @@ void Rotator<Real>::apply(const RotationMatrix& rotation, std::span<const Real> 
   }
   if constexpr (std::is_same_v<Real, float>) {
     if (is_sampled<Real>(bands_)) {
-      return rotate_sampled(bands_, tables_.data(), rotation.matrix(), in.data(), out.data());
+      return rotate_sampled(bands_, evaluation_.data(), tables_.data(), rotation.matrix(), in.data(),
+                            out.data());
     }
   }
   rotate_exchanged(bands_, tables_.data(), rotation.matrix(), in.data(), out.data());

@@ -18,8 +18,8 @@ namespace plumbline::sh {
 ///
 /// Largest error of a coefficient for coefficients in [-1, 1] and every rotation (ShRotator.* tests):
 /// float 5e-7, 1e-6, 2.5e-6 at 3, 6, 20 bands; double 1e-13 at 20 bands.
-/// NaN and Inf spread through their own degree and no further. float sums are in float: numbers above 1e36
-/// may overflow to Inf.
+/// NaN and Inf spread through their own degree and no further. float results are rounded, and summed, in float:
+/// numbers above 1e36 may overflow to Inf.
 /// Vector width is chosen at run time, and with it the last bits of float results.
 template <class Real>
 class Rotator {
@@ -37,6 +37,7 @@ class Rotator {
 
  private:
   int bands_ = 0;
+  std::vector<double> evaluation_;  // of few bands in float; else empty
   std::vector<Real> tables_;
 };
 

@@ -17,7 +17,7 @@ constexpr int place(int l, int m) {
 
 /// Adds degree kL's part of column kM, p = p_lm(z) and previous = p_(l-1)m, and goes on to degree kL + 1.
 template <int kBands, int kM, int kL, class D, class V>
-HWY_INLINE void add_column(D d, const float* beta, const float* scaled, V re, V im, V z, V previous, V p,
+HWY_INLINE void add_column(D d, const double* beta, const double* scaled, V re, V im, V z, V previous, V p,
                            V* sums) {
   if constexpr (kL < kBands) {
     if constexpr (kL > 0) {
@@ -40,9 +40,10 @@ HWY_INLINE void add_column(D d, const float* beta, const float* scaled, V re, V 
 }
 
 template <int kBands, int kM, class D, class V>
-HWY_INLINE void add_columns(D d, const float* beta, const float* scaled, V x, V y, V z, V re, V im, V* sums) {
+HWY_INLINE void add_columns(D d, const double* beta, const double* scaled, V x, V y, V z, V re, V im,
+                            V* sums) {
   if constexpr (kM < kBands) {
-    const V one = hn::Set(d, 1.0F);
+    const V one = hn::Set(d, 1.0);
     add_column<kBands, kM, kM>(d, beta, scaled, re, im, z, one, one, sums);
     const V next_re = kM == 0 ? x : hn::NegMulAdd(y, im, hn::Mul(x, re));
     const V next_im = kM == 0 ? y : hn::MulAdd(x, im, hn::Mul(y, re));
@@ -52,12 +53,17 @@ HWY_INLINE void add_columns(D d, const float* beta, const float* scaled, V x, V 
 
 /// Evaluates degrees 1 … kBands-1 of the function in one vector of directions: sum over m of
 /// p_lm(z) (f_lm Re + f_l,-m Im)(x + iy)^m with monic p_lm = z p_(l-1)m - beta_lm p_(l-2)m.
+/// In double: in float, the rounding of a direction alone would cost l times as much in the value.
 /// Templates, not loops, so that the sums stay in registers.
 template <int kBands, class D, class V>
-HWY_INLINE void evaluate_degrees(D d, const float* beta, const float* scaled, V x, V y, V z, float* values) {
+HWY_INLINE void evaluate_degrees(D d, const double* beta, const double* scaled, V x, V y, V z,
+                                 float* values) {
   V sums[kBands];
   add_columns<kBands, 0>(d, beta, scaled, x, y, z, z, z, sums);
-  for (int l = 1; l < kBands; ++l) hn::StoreU(sums[l], d, values + l * kSamples);
+  const hn::Rebind<float, D> narrow;
+  for (int l = 1; l < kBands; ++l) {
+    hn::StoreU(hn::DemoteTo(narrow, sums[l]), narrow, values + l * kSamples);
+  }
 }
 
 /// Degree l's coefficients: the constant matrix times the values. `last`: nothing behind may be written.
@@ -95,43 +101,45 @@ HWY_INLINE void coefficients_from_degree(const float* table, const float* values
 }
 
 template <int kBands>
-HWY_INLINE void rotate_sampled(const float* table, const float* r, const float* in, float* out) {
+HWY_INLINE void rotate_sampled(const double* evaluation, const float* columns, const double* r,
+                               const float* in, float* out) {
   constexpr int kUsed = 2 * kBands - 1;
-  const hn::CappedTag<float, kUsed <= 8 ? 8 : 16> d;
+  const hn::CappedTag<double, 8> d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  HWY_ALIGN float scaled[64];
-  for (int i = 1; i < kBands * kBands; ++i) scaled[i] = table[kScales + i] * in[i];
+  HWY_ALIGN double scaled[64];
+  for (int i = 1; i < kBands * kBands; ++i) scaled[i] = evaluation[kScales + i] * static_cast<double>(in[i]);
   HWY_ALIGN float values[kBands * kSamples];
   for (int first = 0; first < kUsed; first += lanes) {
-    const auto dx = hn::LoadU(d, table + first);
-    const auto dy = hn::LoadU(d, table + kSamples + first);
-    const auto dz = hn::LoadU(d, table + 2 * kSamples + first);
+    const auto dx = hn::LoadU(d, evaluation + first);
+    const auto dy = hn::LoadU(d, evaluation + kSamples + first);
+    const auto dz = hn::LoadU(d, evaluation + 2 * kSamples + first);
     const auto back = [&](int axis) HWY_ATTR {  // (R^T direction)[axis]
       const auto yz = hn::MulAdd(hn::Set(d, r[3 + axis]), dy, hn::Mul(hn::Set(d, r[6 + axis]), dz));
       return hn::MulAdd(hn::Set(d, r[axis]), dx, yz);
     };
-    evaluate_degrees<kBands>(d, table + kRecurrence, scaled, back(0), back(1), back(2), values + first);
+    evaluate_degrees<kBands>(d, evaluation + kRecurrence, scaled, back(0), back(1), back(2), values + first);
   }
   out[0] = in[0];
-  coefficients_from_degree<kBands, 1>(table, values, out);
+  coefficients_from_degree<kBands, 1>(columns, values, out);
 }
 
-void sampled(int bands, const float* table, const float* matrix, const float* in, float* out) {
+void sampled(int bands, const double* evaluation, const float* columns, const double* matrix, const float* in,
+             float* out) {
   switch (bands) {
     case 2:
-      return rotate_sampled<2>(table, matrix, in, out);
+      return rotate_sampled<2>(evaluation, columns, matrix, in, out);
     case 3:
-      return rotate_sampled<3>(table, matrix, in, out);
+      return rotate_sampled<3>(evaluation, columns, matrix, in, out);
     case 4:
-      return rotate_sampled<4>(table, matrix, in, out);
+      return rotate_sampled<4>(evaluation, columns, matrix, in, out);
     case 5:
-      return rotate_sampled<5>(table, matrix, in, out);
+      return rotate_sampled<5>(evaluation, columns, matrix, in, out);
     case 6:
-      return rotate_sampled<6>(table, matrix, in, out);
+      return rotate_sampled<6>(evaluation, columns, matrix, in, out);
     case 7:
-      return rotate_sampled<7>(table, matrix, in, out);
+      return rotate_sampled<7>(evaluation, columns, matrix, in, out);
     default:
-      return rotate_sampled<8>(table, matrix, in, out);
+      return rotate_sampled<8>(evaluation, columns, matrix, in, out);
   }
 }
 
@@ -288,8 +296,9 @@ HWY_EXPORT(exchanged_f32);
 HWY_EXPORT(exchanged_f64);
 HWY_EXPORT(many);
 
-void rotate_by_samples(int bands, const float* table, const float* matrix, const float* in, float* out) {
-  HWY_DYNAMIC_DISPATCH(sampled)(bands, table, matrix, in, out);
+void rotate_by_samples(int bands, const double* evaluation, const float* columns, const double* matrix,
+                       const float* in, float* out) {
+  HWY_DYNAMIC_DISPATCH(sampled)(bands, evaluation, columns, matrix, in, out);
 }
 
 void rotate_by_exchange(int bands, const float* exchange, const float* turns, const float* in, float* out,

@@ -15,19 +15,22 @@ inline constexpr int kSamples = 16;  // 2 bands - 1 of them used, the rest are z
   return degree <= 1 ? 4 : degree <= 3 ? 8 : 16;
 }
 
-/// Layout of the table: x, y, z of the directions (kSamples each), scale of each coefficient (64), the recurrence's
-/// constants (64, at index(l, m), m >= 0), then for degree 1, 2, …: 2l + 1 columns of result_width(l).
+/// Constants of the evaluation, in double: x, y, z of the directions (kSamples each), the scale of each coefficient
+/// (64), the recurrence's constants (64, at index(l, m), m >= 0).
 inline constexpr int kScales = 3 * kSamples;
 inline constexpr int kRecurrence = kScales + 64;
-inline constexpr int kColumns = kRecurrence + 64;
+inline constexpr int kEvaluationSize = kRecurrence + 64;
+
+/// The columns that take values to coefficients: for degree 1, 2, … 2l + 1 columns of result_width(l).
 [[nodiscard]] constexpr int columns_start(int degree) {
-  int start = kColumns;
+  int start = 0;
   for (int l = 1; l < degree; ++l) start += (2 * l + 1) * result_width(l);
   return start;
 }
 
 /// matrix: nine numbers, row-major R. `out` may be `in`.
-void rotate_by_samples(int bands, const float* table, const float* matrix, const float* in, float* out);
+void rotate_by_samples(int bands, const double* evaluation, const float* columns, const double* matrix,
+                       const float* in, float* out);
 
 // ---------------------------------------------------------------- any bands: turns about z, and exchanges of y and z
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "prt/sh/basis.hpp"
+#include "prt/sh/quadrature.hpp"
 #include "reference/base/error.hpp"
 
 namespace plumbline::sh {
@@ -49,6 +50,53 @@ std::vector<double> cap(int bands, double half_angle_rad) {
   for (int l = 1; l < bands; ++l) {
     derivative = x * derivative + l * p[static_cast<std::size_t>(l - 1)];
     zonal.push_back(std::sqrt(kPi * (2.0 * l + 1.0)) * sin_a * sin_a * derivative / (l * (l + 1.0)));
+  }
+  return zonal;
+}
+
+// I_l = integral_0^1 x^n P_l(x) dx: I_0 = 1/(n + 1), I_1 = 1/(n + 2), I_(l+2) = I_l (n - l)/(n + l + 3).
+std::vector<double> clamped_cosine_power(int bands, double exponent) {
+  require_bands(bands);
+  if (!(exponent >= 0.0 && std::isfinite(exponent))) {
+    throw InputError("clamped_cosine_power: expected a finite exponent >= 0, got " +
+                     std::to_string(exponent));
+  }
+  std::vector<double> zonal;
+  double integral = 1.0 / (exponent + 1.0);
+  double next = 1.0 / (exponent + 2.0);
+  for (int l = 0; l < bands; ++l) {
+    zonal.push_back(std::sqrt(kPi * (2.0 * l + 1.0)) * integral);
+    const double after = integral * (exponent - l) / (exponent + l + 3.0);
+    integral = next;
+    next = after;
+  }
+  return zonal;
+}
+
+// With u = sqrt(1 + s^2 - 2 s x), x = cos a, the lobe (x - s)/u dx is (x - s)/s du, a polynomial in u, so that Gauss nodes
+// are exact: degree 2l + 2 at degree l. u runs from 1 - s (x = 1) to sqrt(1 - s^2) (x = s), and with t in 0 … 1 along it
+// x = 1 - t (1 - s)(u + 1 - s)/(sqrt(1 - s^2) + 1 - s), which cancels nowhere. Factors without x go when normalising.
+std::vector<double> form_factor_lobe(int bands, double half_angle_rad) {
+  require_bands(bands);
+  if (!(half_angle_rad > 0.0 && half_angle_rad < 0.5 * kPi)) {
+    throw InputError("form_factor_lobe: expected a half angle in (0, pi/2), got " +
+                     std::to_string(half_angle_rad));
+  }
+  const double s = std::sin(half_angle_rad);
+  const double first = 1.0 - s;
+  const double last = std::sqrt(first * (1.0 + s));
+  const GaussLegendre rule = gauss_legendre(bands + 2);
+  std::vector<double> zonal(static_cast<std::size_t>(bands), 0.0);
+  for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
+    const double t = 0.5 + 0.5 * rule.nodes[k];
+    const double u = first + t * (last - first);
+    const double fall = t * first * (u + first) / (last + first);  // 1 - x
+    const std::vector<double> p = legendre(bands, 1.0 - fall);
+    for (std::size_t l = 0; l < zonal.size(); ++l) zonal[l] += rule.weights[k] * (first - fall) * p[l];
+  }
+  const double total = zonal[0];
+  for (std::size_t l = 0; l < zonal.size(); ++l) {
+    zonal[l] *= std::sqrt((2.0 * static_cast<double>(l) + 1.0) / (4.0 * kPi)) / total;
   }
   return zonal;
 }

@@ -21,6 +21,17 @@ namespace plumbline::sh {
 /// error about 1e-15 l^2 for the smallest discs too. @throws InputError for other bands or angles
 [[nodiscard]] std::vector<double> cap(int bands, double half_angle_rad);
 
+/// Zonal coefficients of max(0, z)^exponent, radiance of a Phong lobe. exponent 1 is clamped_cosine(), 0 the hemisphere.
+/// @throws InputError unless exponent is finite and >= 0
+[[nodiscard]] std::vector<double> clamped_cosine_power(int bands, double exponent);
+/// The weights with which a receiver averages over a sphere that it sees under half angle `half_angle_rad` in
+/// (0, pi/2), as a function on that sphere about the direction from its centre to the receiver: the cosine of the angle
+/// between the sphere's normal and the direction to the receiver, or 0 where the sphere turns away, divided by its
+/// integral. For a small sphere it is clamped_cosine() / pi. (Source: the thesis "Soft shadows and diffuse reflections",
+/// eq. 4.24, sin(atan(...) - alpha), which is (cos a - s) / sqrt(1 + s^2 - 2 s cos a) with s the sine of the half angle.)
+/// @throws InputError for other bands or angles
+[[nodiscard]] std::vector<double> form_factor_lobe(int bands, double half_angle_rad);
+
 /// Legendre polynomials P_0 … P_(count-1) at x in [-1, 1]. @throws InputError when count < 0
 [[nodiscard]] std::vector<double> legendre(int count, double x);
 

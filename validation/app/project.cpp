@@ -1,5 +1,9 @@
 // plumbline project: an environment as SH coefficients.
+#include <fmt/format.h>
+
 #include "prt/sh/convention.hpp"
+#include "prt/sh/lighting.hpp"
+#include "prt/sh/window.hpp"
 #include "validation/app/options.hpp"
 #include "validation/app/verbs.hpp"
 
@@ -24,13 +28,22 @@ sh::Window window_of(const std::string& name) {
   return sh::Window::none;
 }
 
+/// `auto` says on stderr what it did; the coefficients alone go to the output.
+sh::ShRgb window(const sh::ShRgb& lighting, const Options& options) {
+  if (options.window != "auto") return sh::windowed(lighting, window_of(options.window), options.lambda);
+  sh::AutomaticWindow automatic = sh::automatic_window(lighting);
+  complain(fmt::format(
+      "window: lambda {:.4g}, radiance proved to be at least {:.3g} everywhere, L2 change {:.3g} %",
+      automatic.lambda, automatic.lower_bound, 100.0 * automatic.relative_change));
+  return std::move(automatic.function);
+}
+
 int run(const Options& options) {
   const bool is_twice = options.json.empty() || options.json == options.output;
   require_destinations({{"-o", options.output, ""}, {"--json", is_twice ? "" : options.json, ""}});
   const sh::KnownConvention& convention = sh::known_convention(options.convention);
   const sh::ShRgb lighting = sh::project_radiance(load(options.light), options.bands);
-  const sh::ShRgb seen = sh::windowed(lighting, window_of(options.window), options.lambda);
-  const std::string text = sh::to_json(seen, convention);
+  const std::string text = sh::to_json(window(lighting, options), convention);
   write_output(options.output, text);
   if (!is_twice) write_output(options.json, text);
   return kSuccess;
@@ -45,8 +58,9 @@ void register_project(CLI::App& app, Action& chosen) {
   add_light_modifiers(*verb, options->light);
   add_bands(*verb, options->bands,
             "n bands: degrees 0 to n-1, n^2 coefficients (\"order n\" in Sloan's papers)");
-  verb->add_option("--window", options->window, "low-pass window against ringing")
-      ->check(CLI::IsMember({"none", "hann", "lanczos", "gauss", "laplacian"}));
+  verb->add_option("--window", options->window,
+                   "low-pass window against ringing; auto: the least laplacian without negative radiance")
+      ->check(CLI::IsMember({"none", "hann", "lanczos", "gauss", "laplacian", "auto"}));
   add_number(
       *verb, "--lambda", [options = options.get()](double lambda) { options->lambda = lambda; },
       "a number from 0", [](double lambda) { return lambda >= 0.0; },

@@ -68,6 +68,24 @@ TEST_F(LightCommand, ProjectWindowsAndRotates) {
   EXPECT_LE(std::abs(turned["coefficients"][2][0].get<double>() + z), 1e-5 * std::abs(z));
 }
 
+TEST_F(LightCommand, AutomaticWindowDampsWhatRingsAndLeavesTheRest) {
+  const Arguments rings = {"project", "builtin:two-lobes", "--bands", "3"};
+  const auto plain = nlohmann::json::parse(succeed(rings));
+  Arguments automatic = rings;
+  automatic.insert(automatic.end(), {"--window", "auto"});
+  const Outcome outcome = run(automatic);
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_NE(outcome.err.find("window: lambda"), std::string::npos) << outcome.err;
+  const auto damped = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(damped["coefficients"][0], plain["coefficients"][0]);
+  EXPECT_LT(std::abs(damped["coefficients"][2][0].get<double>()),
+            std::abs(plain["coefficients"][2][0].get<double>()));
+  const Arguments white = {"project", "builtin:white", "--bands", "3"};
+  Arguments white_automatic = white;
+  white_automatic.insert(white_automatic.end(), {"--window", "auto"});
+  EXPECT_EQ(run(white_automatic).out, succeed(white));
+}
+
 TEST_F(LightCommand, ProjectedLightIsALight) {
   (void)succeed({"project", "builtin:white", "--bands", "3", "-o", "light.json"});
   write("points.csv", "0,2,0,0,1,0\n");

@@ -64,12 +64,12 @@ TEST(ShRotator, FloatIsGoodForEveryRotation) {
   for (int bands = 1; bands <= 6; ++bands) {
     const double error = worst_error(Rotator<float>(bands), 20000);
     RecordProperty("worst_" + std::to_string(bands), std::to_string(error * 1e9) + "e-9");
-    EXPECT_LE(error, 3e-6) << bands;
+    EXPECT_LE(error, 1e-6) << bands;
   }
   for (const int bands : {7, 8, 9, 10, 20}) {
     const double error = worst_error(Rotator<float>(bands), 1000);
     RecordProperty("worst_" + std::to_string(bands), std::to_string(error * 1e9) + "e-9");
-    EXPECT_LE(error, 3e-6) << bands;
+    EXPECT_LE(error, 1e-6) << bands;
   }
 }
 

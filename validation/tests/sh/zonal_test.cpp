@@ -162,5 +162,58 @@ TEST(RotateZonal, TurnsDegreeTwoFromZToX) {
   EXPECT_LE(std::abs(rotated[8] - std::sqrt(3.0) / 2.0), 1e-15);
 }
 
+TEST(ClampedCosinePower, HasTheKnownMoments) {
+  const std::vector<double> fifth{1.0 / 6.0, 1.0 / 7.0, 5.0 / 48.0, 4.0 / 63.0, 1.0 / 32.0};
+  const std::vector<double> zonal = clamped_cosine_power(5, 5.0);
+  for (std::size_t l = 0; l < fifth.size(); ++l) {
+    const double scale = std::sqrt(kPi * (2.0 * static_cast<double>(l) + 1.0));
+    EXPECT_LE(std::abs(zonal[l] / scale - fifth[l]), 1e-15) << l;
+  }
+  const std::vector<double> cosine = clamped_cosine(12);
+  const std::vector<double> first = clamped_cosine_power(12, 1.0);
+  const std::vector<double> hemisphere = cap(12, kPi / 2.0);
+  const std::vector<double> zeroth = clamped_cosine_power(12, 0.0);
+  for (std::size_t l = 0; l < cosine.size(); ++l) {
+    EXPECT_LE(std::abs(first[l] - cosine[l]), 1e-15) << l;
+    EXPECT_LE(std::abs(zeroth[l] - hemisphere[l]), 1e-14) << l;
+  }
+  EXPECT_THROW(static_cast<void>(clamped_cosine_power(3, -0.5)), InputError);
+}
+
+// The thesis's own formula at 2000 Gauss nodes in the angle, up to where it reaches 0.
+TEST(FormFactorLobe, IsThatOfTheFormula) {
+  const GaussLegendre rule = gauss_legendre(2000);
+  for (const double theta : {1e-6, 0.1, 0.7, 1.5}) {
+    const double s = std::sin(theta);
+    std::vector<double> expected(12, 0.0);
+    const double range = std::acos(s);
+    for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
+      const double a = 0.5 * range * (1.0 + rule.nodes[k]);
+      const double lobe = std::max(0.0, std::sin(std::atan((1.0 - s * std::cos(a)) / (s * std::sin(a))) - a));
+      const std::vector<double> p = legendre(12, std::cos(a));
+      for (std::size_t l = 0; l < 12; ++l) {
+        expected[l] += kPi * range * rule.weights[k] * std::sin(a) * lobe * p[l] *
+                       std::sqrt((2.0 * static_cast<double>(l) + 1.0) / (4.0 * kPi));
+      }
+    }
+    const double total = expected[0] * std::sqrt(4.0 * kPi);
+    const std::vector<double> zonal = form_factor_lobe(12, theta);
+    for (std::size_t l = 0; l < 12; ++l) {
+      EXPECT_LE(std::abs(zonal[l] - expected[l] / total), 1e-9) << theta << " " << l;
+    }
+  }
+}
+
+TEST(FormFactorLobe, AveragesAConstantToItselfAndTendsToTheCosine) {
+  for (const double theta : {1e-9, 0.3, 1.57}) {
+    EXPECT_LE(std::abs(form_factor_lobe(8, theta)[0] * std::sqrt(4.0 * kPi) - 1.0), 1e-15) << theta;
+  }
+  const std::vector<double> small = form_factor_lobe(8, 1e-9);
+  const std::vector<double> cosine = clamped_cosine(8);
+  for (std::size_t l = 0; l < 8; ++l) EXPECT_LE(std::abs(small[l] - cosine[l] / kPi), 1e-8) << l;
+  EXPECT_THROW(static_cast<void>(form_factor_lobe(3, 0.0)), InputError);
+  EXPECT_THROW(static_cast<void>(form_factor_lobe(3, kPi / 2.0)), InputError);
+}
+
 }  // namespace
 }  // namespace plumbline::sh
