@@ -144,7 +144,7 @@ void rotate_many(benchmark::State& state) {
     benchmark::DoNotOptimize(out.data());
     benchmark::ClobberMemory();
   }
-  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * kMany));
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * static_cast<std::int64_t>(kMany));
 }
 BENCHMARK(rotate_many)->Name("sh_rotate_many_f32")->Arg(3)->Arg(5)->Arg(10)->Arg(20);
 
@@ -160,7 +160,7 @@ void rotate_many_dense(benchmark::State& state) {
     benchmark::DoNotOptimize(out.data());
     benchmark::ClobberMemory();
   }
-  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * kMany));
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * static_cast<std::int64_t>(kMany));
 }
 BENCHMARK(rotate_many_dense)->Name("sh_rotate_many_dense_eigen_f32")->Arg(5)->Arg(20);
 
