@@ -17,26 +17,28 @@ constexpr int kSkyWidth = 1024;
 constexpr int kSkyHeight = 512;
 constexpr int kSubsamples = 4;  // along each side of a texel: a sun of half a degree covers one or two
 
-integrate::RenderResult trace(const Task& task, int spp, std::uint64_t seed, bool has_halves) {
+integrate::RenderResult trace(const Task& task, int randomisations, int spp, std::uint64_t seed,
+                              bool has_halves) {
   integrate::RenderSettings settings;
   settings.width = task.width;
   settings.height = task.height;
   settings.samples_per_pixel = spp;
   settings.max_bounces = task.max_bounces;
   settings.seed = seed;
+  settings.randomisations = randomisations;
   settings.threads = task.threads;
   settings.layers.halves = has_halves;
   return integrate::render(*task.world, task.camera, settings);
 }
 
-Method make_path(const Task& task) {
-  return {"path",
-          [task](int spp, std::uint64_t seed) {
-            const integrate::RenderResult result = trace(task, spp, seed, false);
+Method make_path(const Task& task, const std::string& name, int randomisations) {
+  return {name,
+          [task, randomisations](int spp, std::uint64_t seed) {
+            const integrate::RenderResult result = trace(task, randomisations, spp, seed, false);
             return Rendered{*image::rgb_layer(result.image, ""), result.seconds};
           },
-          [task](int spp, std::uint64_t seed) {
-            const integrate::RenderResult result = trace(task, spp, seed, true);
+          [task, randomisations](int spp, std::uint64_t seed) {
+            const integrate::RenderResult result = trace(task, randomisations, spp, seed, true);
             return Halved{*image::rgb_layer(result.image, "a"), *image::rgb_layer(result.image, "b")};
           }};
 }
@@ -53,11 +55,18 @@ Rgb mean_of_texel(const light::Environment& environment, int x, int y) {
   return glm::max(Rgb(sum / static_cast<double>(kSubsamples * kSubsamples)), Rgb(0.0F));
 }
 
+std::string is_always_there(const Task& /*task*/) {
+  return {};
+}
+
 }  // namespace
 
 const std::vector<MethodEntry>& methods() {
   static const std::vector<MethodEntry> entries = {
-      {"path", "this project's path tracer", [](const Task&) { return std::string(); }, make_path},
+      {"path", "this project's path tracer", is_always_there,
+       [](const Task& task) { return make_path(task, "path", integrate::kRandomisations); }},
+      {"path-2", "the same with two randomisations a pixel: longer point sequences, a vaguer standard error",
+       is_always_there, [](const Task& task) { return make_path(task, "path-2", 2); }},
       {"cycles", "Blender's Cycles, in its best setting for diffuse scenes", reason_against_cycles,
        make_cycles}};
   return entries;

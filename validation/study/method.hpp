@@ -46,7 +46,7 @@ struct MethodEntry {
   std::function<std::string(const Task& task)> reason_against;
   std::function<Method(const Task& task)> make;
 };
-/// "path" (integrate::render) and "cycles" (Blender's).
+/// "path" and "path-2" (integrate::render with 16 and with 2 randomisations) and "cycles" (Blender's).
 [[nodiscard]] const std::vector<MethodEntry>& methods();
 /// @throws InputError listing the names there are.
 [[nodiscard]] const MethodEntry& find_method(const std::string& name);
