@@ -210,10 +210,10 @@ HWY_NOINLINE void store_unrolled(const RecurrenceTable<T>& table, const Directio
   store_unrolled_columns<kBands, 0>(table, at, azimuth, table.steps.data(), places);
 }
 
-/// Calls wide(first) for groups of kTogether vectors and narrow(first) for the vectors left over.
-template <class T, class Wide, class Narrow>
+/// Calls wide(first) for groups of kCount vectors and narrow(first) for the vectors left over.
+template <class T, std::size_t kCount = kTogether<T>, class Wide, class Narrow>
 HWY_INLINE void for_vectors(std::size_t count, const Wide& wide, const Narrow& narrow) {
-  constexpr std::size_t kGroup = kTogether<T> * kLanes<T>;
+  constexpr std::size_t kGroup = kCount * kLanes<T>;
   std::size_t k = 0;
   for (; k + kGroup <= count; k += kGroup) wide(k);
   for (; k < count; k += kLanes<T>) narrow(k);
@@ -221,8 +221,8 @@ HWY_INLINE void for_vectors(std::size_t count, const Wide& wide, const Narrow& n
 
 template <int kBands, class T>
 void store_few(const RecurrenceTable<T>& table, const DirectionBlocks<T>& in, T* out) {
-  for_vectors<T>(
-      in.count, [&](std::size_t k) { store_unrolled<kBands, kTogether<T>>(table, in, k, out); },
+  for_vectors<T, 2>(
+      in.count, [&](std::size_t k) { store_unrolled<kBands, 2>(table, in, k, out); },
       [&](std::size_t k) { store_unrolled<kBands, 1>(table, in, k, out); });
 }
 
