@@ -78,13 +78,13 @@ struct Circle {
 struct AzimuthTable {
   bool is_folded = false;
   std::size_t count = 0;   // columns, or half of them where folded
-  std::size_t stride = 0;  // padded
+  std::size_t stride = 0;  // three numbers a column, padded
   std::vector<double> weights;
 
   AzimuthTable(int columns, int bands, int start_half_turns, Column shape)
       : is_folded(columns % 2 == 0),
         count(static_cast<std::size_t>(is_folded ? columns / 2 : columns)),
-        stride(padded(count)),
+        stride(3 * padded(count)),
         weights(2 * static_cast<std::size_t>(bands) * stride, 0.0) {
     const Circle circle(static_cast<std::size_t>(columns));
     const double width = 2.0 * kPi / columns;
@@ -96,47 +96,33 @@ struct AzimuthTable {
       // The middle of column c is at pi (2c + 1) / columns; m times that, reduced as an integer, is exact.
       const auto turn = 2 * static_cast<std::size_t>(columns);
       std::size_t place = static_cast<std::size_t>(m) % turn;
-      for (std::size_t c = 0; c < count; ++c) {
-        row[c] = scale * circle.cosine[place];
-        row[stride + c] = scale * circle.sine[place];
-        place = (place + 2 * static_cast<std::size_t>(m)) % turn;
+      for (std::size_t c = 0; c < 3 * count; c += 3) {
+        std::fill_n(row + c, 3, scale * circle.cosine[place]);
+        std::fill_n(row + stride + c, 3, scale * circle.sine[place]);
+        place += 2 * static_cast<std::size_t>(m);
+        while (place >= turn) place -= turn;
       }
     }
   }
 };
 
-/// Moments of one row: [cos 0, sin 0, cos 1, …][r, g, b].
+/// Moments of rows: for each of kRowsTogether rows [cos 0, sin 0, cos 1, …][r, g, b].
 class AzimuthMoments {
  public:
-  AzimuthMoments(const AzimuthTable& table, int bands) : table_(table), sums_(3 * table.stride, 0.0) {
-    if (table.is_folded) differences_.assign(3 * table.stride, 0.0);
-    for (int m = 0; m < bands; ++m) {
-      const double* row = table.weights.data() + 2 * static_cast<std::size_t>(m) * table.stride;
-      weights_.insert(weights_.end(), {row, row + table.stride});
-    }
-    moments_.resize(3 * weights_.size());
-  }
+  AzimuthMoments(const AzimuthTable& table, int bands)
+      : weights_{table.weights.data(), 2 * static_cast<std::size_t>(bands), table.stride, table.count,
+                 table.is_folded},
+        room_(row_moments_room(weights_.rows)),
+        moments_(kRowsTogether * 3 * weights_.rows) {}
 
-  const std::vector<double>& of(std::span<const Rgb> row) {
-    const float* pixels = &row[0].x;
-    if (table_.is_folded) {
-      fold_pixels(pixels, table_.count, sums_.data(), differences_.data(), table_.stride);
-    } else {
-      split_pixels(pixels, table_.count, sums_.data(), table_.stride);
-    }
-    for (std::size_t k = 0; k < weights_.size(); k += 2) {
-      const bool is_odd = table_.is_folded && k % 4 != 0;
-      channel_moments(weights_.data() + k, 2, is_odd ? differences_.data() : sums_.data(), table_.stride,
-                      table_.stride, moments_.data() + 3 * k);
-    }
-    return moments_;
+  void make(const std::array<const float*, kRowsTogether>& rows) {
+    row_moments(rows.data(), weights_, room_.data(), moments_.data());
   }
+  [[nodiscard]] const double* of(std::size_t row) const { return moments_.data() + row * 3 * weights_.rows; }
 
  private:
-  const AzimuthTable& table_;
-  std::vector<double> sums_;
-  std::vector<double> differences_;
-  std::vector<const double*> weights_;
+  RowWeights weights_;
+  std::vector<double> room_;
   std::vector<double> moments_;
 };
 
@@ -163,25 +149,39 @@ RgbD triple(const double* values) {
   return {values[0], values[1], values[2]};
 }
 
+/// Adds the products of a row's integrals over theta and its moments.
+void add_row(const std::vector<double>& q, const double* f, int bands, Coefficients& sum) {
+  for (int l = 0; l < bands; ++l) {
+    for (int m = 0; m <= l; ++m) {
+      const auto plus = static_cast<std::size_t>(index(l, m));
+      const double* moment = f + 6 * static_cast<std::size_t>(m);
+      sum[plus] += q[plus] * triple(moment);
+      if (m > 0) sum[static_cast<std::size_t>(index(l, -m))] += q[plus] * triple(moment + 3);
+    }
+  }
+}
+
 Coefficients project_grid(const Grid& grid, int bands, int threads) {
   const Basis<double> basis(bands);
   constexpr std::size_t kRowsATask = 16;
   const std::size_t tasks = (grid.rows + kRowsATask - 1) / kRowsATask;
   return sum_in_blocks(tasks, size_of(bands), threads, [&](std::size_t task, Coefficients& sum) {
     AzimuthMoments azimuth(grid.azimuth, bands);
-    std::vector<Rgb> room;
+    std::array<std::vector<Rgb>, kRowsTogether> room;
     std::vector<double> scratch;
     std::vector<double> q;
-    for (std::size_t row = task * kRowsATask; row < std::min(grid.rows, (task + 1) * kRowsATask); ++row) {
-      const double* f = azimuth.of(grid.read(row, room)).data();
-      integrate_rings(basis, grid.rings(row), scratch, q);
-      for (int l = 0; l < bands; ++l) {
-        for (int m = 0; m <= l; ++m) {
-          const auto plus = static_cast<std::size_t>(index(l, m));
-          const double* moment = f + 6 * static_cast<std::size_t>(m);
-          sum[plus] += q[plus] * triple(moment);
-          if (m > 0) sum[static_cast<std::size_t>(index(l, -m))] += q[plus] * triple(moment + 3);
-        }
+    const std::size_t end = std::min(grid.rows, (task + 1) * kRowsATask);
+    for (std::size_t first = task * kRowsATask; first < end; first += kRowsTogether) {
+      const std::size_t count = std::min(kRowsTogether, end - first);
+      std::array<const float*, kRowsTogether> pixels;
+      for (std::size_t k = 0; k < kRowsTogether; ++k) {
+        pixels[k] =
+            k < count ? &grid.read(first + k, room[k])[0].x : pixels[0];  // repeated where rows are missing
+      }
+      azimuth.make(pixels);
+      for (std::size_t k = 0; k < count; ++k) {
+        integrate_rings(basis, grid.rings(first + k), scratch, q);
+        add_row(q, azimuth.of(k), bands, sum);
       }
     }
   });
@@ -277,11 +277,7 @@ std::vector<Ring> hat_rings(std::size_t row, std::size_t rows, const GaussLegend
 std::vector<Ring> box_rings(std::size_t row, std::size_t rows, const GaussLegendre& rule) {
   const double step = kPi / static_cast<double>(rows);
   std::vector<Ring> rings;
-  for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
-    const double theta = step * (static_cast<double>(row) + 0.5 + 0.5 * rule.nodes[k]);
-    const double sine = std::sin(theta);
-    rings.push_back({std::cos(theta), sine, 0.5 * step * rule.weights[k] * sine});
-  }
+  append_rings(step * static_cast<double>(row), step * static_cast<double>(row + 1), 1.0, 1.0, rule, rings);
   return rings;
 }
 
