@@ -42,7 +42,7 @@ void time_directions(benchmark::State& state, std::size_t count, const Work& wor
     work();
     benchmark::ClobberMemory();
   }
-  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * count));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(count));
 }
 
 template <class Real, std::size_t kCount>
