@@ -8,6 +8,7 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include "prt/sh/batch.hpp"
 #include "prt/sh/moment_kernels.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -21,29 +22,6 @@ using Wide = hn::CappedTag<double, 8>;
 using Narrow = hn::Rebind<float, Wide>;
 using Numbers = hn::Vec<Wide>;
 constexpr std::size_t kLanes = hn::MaxLanes(Wide());
-
-struct Pixels {
-  Numbers channel[3];
-};
-
-HWY_INLINE Pixels load_pixels(const float* rgb) {
-  const Wide d;
-  hn::Vec<Narrow> r, g, b;
-  hn::LoadInterleaved3(Narrow(), rgb, r, g, b);
-  return {{hn::PromoteTo(d, r), hn::PromoteTo(d, g), hn::PromoteTo(d, b)}};
-}
-
-void split(const float* rgb, std::size_t count, double* channels, std::size_t stride) {
-  const Wide d;
-  std::size_t k = 0;
-  for (; k + kLanes <= count; k += kLanes) {
-    const Pixels pixels = load_pixels(rgb + 3 * k);
-    for (std::size_t c = 0; c < 3; ++c) hn::StoreU(pixels.channel[c], d, channels + c * stride + k);
-  }
-  for (; k < count; ++k) {
-    for (std::size_t c = 0; c < 3; ++c) channels[c * stride + k] = static_cast<double>(rgb[3 * k + c]);
-  }
-}
 
 // ---------------------------------------------------------------- rows of RGB pixels as they lie in memory
 //
@@ -151,33 +129,116 @@ void moments_of_rows(const float* const* rows, const RowWeights& weights, double
   }
 }
 
-/// kRows rows of weights at once; two vectors at a time, so that the sums do not wait for themselves.
-template <std::size_t kRows>
-HWY_INLINE void moments_of(const double* const* weights, const double* channels, std::size_t stride,
-                           std::size_t count, double* out) {
+// ---------------------------------------------------------------- faces of cubes
+
+struct Pixels {
+  Numbers channel[3];
+};
+
+template <bool kIsReversed>
+HWY_INLINE Pixels load_pixels(const float* rgb) {
+  const Narrow narrow;
   const Wide d;
-  Numbers even[3 * kRows];
-  Numbers odd[3 * kRows];
-  for (std::size_t i = 0; i < 3 * kRows; ++i) even[i] = odd[i] = hn::Zero(d);
-  for (std::size_t k = 0; k < count; k += 2 * kLanes) {
-    for (std::size_t r = 0; r < kRows; ++r) {
-      const auto w0 = hn::LoadU(d, weights[r] + k);
-      const auto w1 = hn::LoadU(d, weights[r] + k + kLanes);
-      for (std::size_t c = 0; c < 3; ++c) {
-        even[3 * r + c] = hn::MulAdd(w0, hn::LoadU(d, channels + c * stride + k), even[3 * r + c]);
-        odd[3 * r + c] = hn::MulAdd(w1, hn::LoadU(d, channels + c * stride + k + kLanes), odd[3 * r + c]);
-      }
-    }
+  hn::Vec<Narrow> r, g, b;
+  hn::LoadInterleaved3(narrow, rgb, r, g, b);
+  if constexpr (kIsReversed) {
+    return {{hn::PromoteTo(d, hn::Reverse(narrow, r)), hn::PromoteTo(d, hn::Reverse(narrow, g)),
+             hn::PromoteTo(d, hn::Reverse(narrow, b))}};
+  } else {
+    return {{hn::PromoteTo(d, r), hn::PromoteTo(d, g), hn::PromoteTo(d, b)}};
   }
-  for (std::size_t i = 0; i < 3 * kRows; ++i)
-    out[i] = hn::GetLane(hn::SumOfLanes(d, hn::Add(even[i], odd[i])));
 }
 
-void moments(const double* const* weights, std::size_t rows, const double* channels, std::size_t stride,
-             std::size_t count, double* out) {
+HWY_INLINE void fold_pixel(const float* top, const float* bottom, std::size_t width, std::size_t x,
+                           double* parts, std::size_t stride) {
+  const std::size_t mirror = width - 1 - x;
+  const auto at = [=](const float* row, std::size_t k, std::size_t c) {
+    return row != nullptr ? static_cast<double>(row[3 * k + c]) : 0.0;
+  };
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double top_right = mirror != x ? at(top, mirror, c) : 0.0;
+    const double bottom_right = mirror != x ? at(bottom, mirror, c) : 0.0;
+    const double even_top = at(top, x, c) + top_right;
+    const double odd_top = at(top, x, c) - top_right;
+    const double even_bottom = at(bottom, x, c) + bottom_right;
+    const double odd_bottom = at(bottom, x, c) - bottom_right;
+    double* part = parts + c * stride + x;
+    part[0] = even_top + even_bottom;
+    part[3 * stride] = odd_top + odd_bottom;
+    part[6 * stride] = even_top - even_bottom;
+    part[9 * stride] = odd_top - odd_bottom;
+  }
+}
+
+void fold(const float* top, const float* bottom, std::size_t width, double* parts, std::size_t stride) {
+  const Wide d;
+  std::size_t x = 0;
+  for (; bottom != nullptr && x + kLanes <= width / 2; x += kLanes) {
+    const std::size_t mirror = width - kLanes - x;
+    const Pixels top_left = load_pixels<false>(top + 3 * x);
+    const Pixels top_right = load_pixels<true>(top + 3 * mirror);
+    const Pixels bottom_left = load_pixels<false>(bottom + 3 * x);
+    const Pixels bottom_right = load_pixels<true>(bottom + 3 * mirror);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto even_top = hn::Add(top_left.channel[c], top_right.channel[c]);
+      const auto odd_top = hn::Sub(top_left.channel[c], top_right.channel[c]);
+      const auto even_bottom = hn::Add(bottom_left.channel[c], bottom_right.channel[c]);
+      const auto odd_bottom = hn::Sub(bottom_left.channel[c], bottom_right.channel[c]);
+      double* part = parts + c * stride + x;
+      hn::StoreU(hn::Add(even_top, even_bottom), d, part);
+      hn::StoreU(hn::Add(odd_top, odd_bottom), d, part + 3 * stride);
+      hn::StoreU(hn::Sub(even_top, even_bottom), d, part + 6 * stride);
+      hn::StoreU(hn::Sub(odd_top, odd_bottom), d, part + 9 * stride);
+    }
+  }
+  for (; x < (width + 1) / 2; ++x) fold_pixel(top, bottom, width, x, parts, stride);
+}
+
+/// kCount rows of weights at once: enough sums that they do not wait for themselves.
+template <std::size_t kCount>
+HWY_INLINE void add_moments_of(const double* weights, const double* channels, std::size_t stride,
+                               double* sums) {
+  const Wide d;
+  Numbers total[3 * kCount];
+  for (std::size_t i = 0; i < 3 * kCount; ++i) total[i] = hn::LoadU(d, sums + i * kSumLanes);
+  for (std::size_t k = 0; k < stride; k += kLanes) {
+    const auto red = hn::LoadU(d, channels + k);
+    const auto green = hn::LoadU(d, channels + stride + k);
+    const auto blue = hn::LoadU(d, channels + 2 * stride + k);
+    for (std::size_t r = 0; r < kCount; ++r) {
+      const auto weight = hn::LoadU(d, weights + r * stride + k);
+      total[3 * r] = hn::MulAdd(weight, red, total[3 * r]);
+      total[3 * r + 1] = hn::MulAdd(weight, green, total[3 * r + 1]);
+      total[3 * r + 2] = hn::MulAdd(weight, blue, total[3 * r + 2]);
+    }
+  }
+  for (std::size_t i = 0; i < 3 * kCount; ++i) hn::StoreU(total[i], d, sums + i * kSumLanes);
+}
+
+void add_all_moments(const double* weights, std::size_t rows, const double* channels, std::size_t stride,
+                     double* sums) {
   std::size_t r = 0;
-  for (; r + 2 <= rows; r += 2) moments_of<2>(weights + r, channels, stride, count, out + 3 * r);
-  if (r < rows) moments_of<1>(weights + r, channels, stride, count, out + 3 * r);
+  for (; r + 3 <= rows; r += 3) {
+    add_moments_of<3>(weights + r * stride, channels, stride, sums + 3 * r * kSumLanes);
+  }
+  if (rows - r == 2) add_moments_of<2>(weights + r * stride, channels, stride, sums + 3 * r * kSumLanes);
+  if (rows - r == 1) add_moments_of<1>(weights + r * stride, channels, stride, sums + 3 * r * kSumLanes);
+}
+
+void add_blocks(const double* weight, const double* values, std::size_t blocks, const std::size_t* place,
+                std::size_t size, bool is_first, double* table, std::size_t stride) {
+  const Wide d;
+  for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t u = 0; u < kBlockDirections; u += kLanes) {
+      double* out = table + place[i] * stride + u;
+      auto sum = is_first ? hn::Zero(d) : hn::LoadU(d, out);
+      for (std::size_t b = 0; b < blocks; ++b) {
+        sum = hn::MulAdd(hn::LoadU(d, weight + b * kBlockDirections + u),
+                         hn::LoadU(d, values + (b * size + i) * kBlockDirections + u), sum);
+      }
+      hn::StoreU(sum, d, out);
+    }
+  }
 }
 
 void nodes(const double* s, const double* ds, double t, double dt, std::size_t count, double* x, double* y,
@@ -207,22 +268,28 @@ HWY_AFTER_NAMESPACE();
 namespace plumbline::sh {
 namespace {
 
-HWY_EXPORT(split);
+HWY_EXPORT(fold);
 HWY_EXPORT(moments_of_rows);
-HWY_EXPORT(moments);
+HWY_EXPORT(add_all_moments);
+HWY_EXPORT(add_blocks);
 HWY_EXPORT(nodes);
 
 }  // namespace
 
-void split_pixels(const float* rgb, std::size_t count, double* channels, std::size_t stride) {
-  HWY_DYNAMIC_DISPATCH(split)(rgb, count, channels, stride);
+void fold_rows(const float* top, const float* bottom, std::size_t width, double* parts, std::size_t stride) {
+  HWY_DYNAMIC_DISPATCH(fold)(top, bottom, width, parts, stride);
 }
 void row_moments(const float* const* rows, const RowWeights& weights, double* room, double* out) {
   HWY_DYNAMIC_DISPATCH(moments_of_rows)(rows, weights, room, out);
 }
-void channel_moments(const double* const* weights, std::size_t rows, const double* channels,
-                     std::size_t stride, std::size_t count, double* out) {
-  HWY_DYNAMIC_DISPATCH(moments)(weights, rows, channels, stride, count, out);
+void add_moments(const double* weights, std::size_t rows, const double* channels, std::size_t stride,
+                 double* sums) {
+  HWY_DYNAMIC_DISPATCH(add_all_moments)(weights, rows, channels, stride, sums);
+}
+void add_weighted_blocks(const double* weight, const double* values, std::size_t blocks,
+                         const std::size_t* place, std::size_t size, bool is_first, double* table,
+                         std::size_t stride) {
+  HWY_DYNAMIC_DISPATCH(add_blocks)(weight, values, blocks, place, size, is_first, table, stride);
 }
 void face_nodes(const double* s, const double* ds, double t, double dt, std::size_t count, double* x,
                 double* y, double* z, double* weight) {

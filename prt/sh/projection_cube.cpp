@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "prt/sh/batch.hpp"
 #include "prt/sh/moment_kernels.hpp"
@@ -68,137 +69,140 @@ struct Quarter {
   }
 };
 
-/// integrals[i][x] over the texels of row y of a quarter; what is beside the row is 0.
+/// The coefficients, those of one parity after the other.
+struct Groups {
+  std::vector<std::size_t> indices;     // by place
+  std::vector<std::size_t> places;      // by index
+  std::array<std::size_t, 5> firsts{};  // places where the parities start, and their number
+
+  explicit Groups(int bands) : places(static_cast<std::size_t>(coefficient_count(bands))) {
+    for (std::size_t parity = 0; parity < 4; ++parity) {
+      firsts[parity] = indices.size();
+      for (int l = 0; l < bands; ++l) {
+        for (int m = -l; m <= l; ++m) {
+          if (parity_of(m) != parity) continue;
+          places[static_cast<std::size_t>(index(l, m))] = indices.size();
+          indices.push_back(static_cast<std::size_t>(index(l, m)));
+        }
+      }
+    }
+    firsts[4] = indices.size();
+  }
+};
+
+/// integrals[place][x] over the texels of row y of a quarter; what is beside the row is 0. Made for 16 texels at a time,
+/// so that the nodes' values stay in the first-level cache.
 class RowIntegrals {
  public:
-  RowIntegrals(const Quarter& quarter, const GaussLegendre& rule, const BatchBasis<double>& basis)
+  RowIntegrals(const Quarter& quarter, const GaussLegendre& rule, const BatchBasis<double>& basis,
+               const Groups& groups)
       : quarter_(quarter),
         rule_(rule),
         basis_(basis),
-        size_(static_cast<std::size_t>(basis.bands() * basis.bands())) {
-    const std::size_t count = rule.nodes.size() * quarter.stride;
-    for (auto* values : {&s_, &ds_, &x_, &y_, &z_, &weight_}) values->resize(count);
-    values_.resize(blocked_size(basis.bands(), count));
-    table_.resize(size_ * quarter.stride);
-    total_.resize(quarter.stride);
-    for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
-      for (std::size_t x = 0; x < quarter.half; ++x) {
-        s_[i * quarter.stride + x] = quarter.edge(x) + (1.0 + rule.nodes[i]) / quarter.size;
-        ds_[i * quarter.stride + x] = rule.weights[i];
+        groups_(groups),
+        width_(rule.nodes.size() * kBlockDirections) {
+    const std::size_t blocks = quarter.stride / kBlockDirections;
+    for (auto* values : {&s_, &ds_}) values->resize(width_ * blocks);
+    for (auto* values : {&x_, &y_, &z_, &weight_}) values->resize(width_ * rule.nodes.size());
+    values_.resize(blocked_size(basis.bands(), width_));
+    table_.resize(groups.indices.size() * quarter.stride);
+    for (std::size_t x = 0; x < quarter.stride; ++x) {
+      for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+        const std::size_t at = x / kBlockDirections * width_ + i * kBlockDirections + x % kBlockDirections;
+        s_[at] = quarter.edge(x) + (1.0 + rule.nodes[i]) / quarter.size;
+        ds_[at] = x < quarter.half ? rule.weights[i] : 0.0;
       }
     }
   }
 
   void make(std::size_t row) {
-    std::fill(table_.begin(), table_.end(), 0.0);
-    std::fill(total_.begin(), total_.end(), 0.0);
-    for (std::size_t j = 0; j < rule_.nodes.size(); ++j) {
-      const double t = quarter_.edge(row) + (1.0 + rule_.nodes[j]) / quarter_.size;
-      face_nodes(s_.data(), ds_.data(), t, rule_.weights[j], s_.size(), x_.data(), y_.data(), z_.data(),
-                 weight_.data());
-      basis_.evaluate_blocked({x_, y_, z_}, values_);
-      for (std::size_t k = 0; k < s_.size(); k += kBlockDirections) add_block(k);
-    }
-    for (std::size_t x = 0; x < quarter_.half; ++x) total_[x] = quarter_.solid_angle(x, row) / total_[x];
-    for (std::size_t i = 0; i < size_; ++i) {
-      double* integrals = table_.data() + i * quarter_.stride;
-      for (std::size_t x = 0; x < quarter_.stride; ++x) integrals[x] *= total_[x];
-    }
+    for (std::size_t x = 0; x < quarter_.stride; x += kBlockDirections) make_block(row, x);
   }
-  [[nodiscard]] const double* of(std::size_t i) const { return table_.data() + i * quarter_.stride; }
+  [[nodiscard]] const double* of(std::size_t place) const { return table_.data() + place * quarter_.stride; }
 
  private:
-  void add_block(std::size_t k) {
-    const std::size_t x = k % quarter_.stride;
-    const double* weight = weight_.data() + k;
-    const double* values = values_.data() + k * size_;
-    for (std::size_t u = 0; u < kBlockDirections; ++u) total_[x + u] += weight[u];
-    for (std::size_t i = 0; i < size_; ++i, values += kBlockDirections) {
-      double* integrals = table_.data() + i * quarter_.stride + x;
-      for (std::size_t u = 0; u < kBlockDirections; ++u) integrals[u] += weight[u] * values[u];
+  void make_block(std::size_t row, std::size_t x) {
+    const std::size_t from = x * rule_.nodes.size();
+    for (std::size_t j = 0; j < rule_.nodes.size(); ++j) {
+      const double t = quarter_.edge(row) + (1.0 + rule_.nodes[j]) / quarter_.size;
+      const std::size_t to = j * width_;
+      face_nodes(s_.data() + from, ds_.data() + from, t, rule_.weights[j], width_, x_.data() + to,
+                 y_.data() + to, z_.data() + to, weight_.data() + to);
     }
+    scale_weights(row, x);
+    for (std::size_t j = 0; j < rule_.nodes.size(); ++j) {
+      const auto part = [&](const std::vector<double>& all) {
+        return std::span<const double>(all).subspan(j * width_, width_);
+      };
+      basis_.evaluate_blocked({part(x_), part(y_), part(z_)}, values_);
+      add_weighted_blocks(part(weight_).data(), values_.data(), rule_.nodes.size(), groups_.places.data(),
+                          groups_.places.size(), j == 0, table_.data() + x, quarter_.stride);
+    }
+  }
+
+  /// Weights of a texel sum to its solid angle.
+  void scale_weights(std::size_t row, std::size_t x) {
+    std::array<double, kBlockDirections> scale{};
+    for (std::size_t k = 0; k < weight_.size(); ++k) scale[k % kBlockDirections] += weight_[k];
+    for (std::size_t u = 0; u < kBlockDirections; ++u) {
+      if (x + u < quarter_.half) scale[u] = quarter_.solid_angle(x + u, row) / scale[u];
+    }
+    for (std::size_t k = 0; k < weight_.size(); ++k) weight_[k] *= scale[k % kBlockDirections];
   }
 
   const Quarter& quarter_;
   const GaussLegendre& rule_;
   const BatchBasis<double>& basis_;
-  std::size_t size_;
-  std::vector<double> s_, ds_, x_, y_, z_, weight_, values_, table_, total_;
+  const Groups& groups_;
+  std::size_t width_;  // nodes of 16 texels with the same t
+  std::vector<double> s_, ds_, x_, y_, z_, weight_, values_, table_;
 };
 
-/// Even and odd parts of the mirror images of row y's texels, three channels each.
-class FoldedRow {
+/// The sums of one task, not yet added up over the lanes of their vectors.
+class FaceSums {
  public:
-  explicit FoldedRow(const Quarter& quarter) : quarter_(quarter), rows_(2), parts_(4) {
-    for (auto& row : rows_) row.assign(3 * padded(static_cast<std::size_t>(quarter.size)), 0.0);
-    for (auto& part : parts_) part.assign(3 * quarter.stride, 0.0);
+  FaceSums(const Quarter& quarter, const Groups& groups)
+      : quarter_(quarter),
+        groups_(groups),
+        parts_(12 * quarter.stride, 0.0),
+        sums_(6 * 3 * groups.indices.size() * kSumLanes, 0.0) {}
+
+  void add_row(const RowIntegrals& integrals, const image::Image& image, std::size_t y, std::size_t face) {
+    const auto width = static_cast<std::size_t>(quarter_.size);
+    const std::size_t mirror = width - 1 - y;
+    const float* bottom = mirror != y ? &image.pixels[mirror * width].x : nullptr;  // else it counts once
+    fold_rows(&image.pixels[y * width].x, bottom, width, parts_.data(), quarter_.stride);
+    for (std::size_t parity = 0; parity < 4; ++parity) {
+      const std::size_t first = groups_.firsts[parity];
+      add_moments(integrals.of(first), groups_.firsts[parity + 1] - first,
+                  parts_.data() + 3 * parity * quarter_.stride, quarter_.stride, sums_of(face, first));
+    }
   }
 
-  void make(const image::Image& face, std::size_t y) {
-    const auto width = static_cast<std::size_t>(quarter_.size);
-    const std::size_t stride = padded(width);
-    const std::size_t mirror = width - 1 - y;
-    split_pixels(&face.pixels[y * width].x, width, rows_[0].data(), stride);
-    if (mirror != y) {
-      split_pixels(&face.pixels[mirror * width].x, width, rows_[1].data(), stride);
-    } else {
-      std::fill(rows_[1].begin(), rows_[1].end(), 0.0);  // its own mirror image counts once
+  /// Adds all to the six faces' coefficients.
+  void add_to(Coefficients& faces) {
+    const std::size_t size = groups_.indices.size();
+    for (std::size_t face = 0; face < 6; ++face) {
+      for (std::size_t place = 0; place < size; ++place) {
+        const double* sums = sums_of(face, place);
+        RgbD& total = faces[face * size + groups_.indices[place]];
+        for (int c = 0; c < 3; ++c) {
+          for (std::size_t lane = 0; lane < kSumLanes; ++lane) total[c] += *sums++;
+        }
+      }
     }
-    for (std::size_t c = 0; c < 3; ++c) fold(rows_[0].data() + c * stride, rows_[1].data() + c * stride, c);
   }
-  [[nodiscard]] const double* part(std::size_t parity) const { return parts_[parity].data(); }
 
  private:
-  void fold(const double* top, const double* bottom, std::size_t channel) {
-    const auto width = static_cast<std::size_t>(quarter_.size);
-    for (std::size_t x = 0; x < quarter_.half; ++x) {
-      const std::size_t mirror = width - 1 - x;
-      const double keep = mirror != x ? 1.0 : 0.0;
-      const double b = keep * top[mirror];
-      const double d = keep * bottom[mirror];
-      const double even_top = top[x] + b;
-      const double odd_top = top[x] - b;
-      const double even_bottom = bottom[x] + d;
-      const double odd_bottom = bottom[x] - d;
-      const std::size_t at = channel * quarter_.stride + x;
-      parts_[0][at] = even_top + even_bottom;
-      parts_[1][at] = odd_top + odd_bottom;
-      parts_[2][at] = even_top - even_bottom;
-      parts_[3][at] = odd_top - odd_bottom;
-    }
+  [[nodiscard]] double* sums_of(std::size_t face, std::size_t place) {
+    return sums_.data() + (face * groups_.indices.size() + place) * 3 * kSumLanes;
   }
 
   const Quarter& quarter_;
-  std::vector<std::vector<double>> rows_;
-  std::vector<std::vector<double>> parts_;
+  const Groups& groups_;
+  std::vector<double> parts_;
+  std::vector<double> sums_;
 };
-
-/// Coefficients by parity, and back.
-struct Groups {
-  std::array<std::vector<std::size_t>, 4> indices;
-  explicit Groups(int bands) {
-    for (int l = 0; l < bands; ++l) {
-      for (int m = -l; m <= l; ++m) indices[parity_of(m)].push_back(static_cast<std::size_t>(index(l, m)));
-    }
-  }
-};
-
-void add_face_row(const RowIntegrals& integrals, const FoldedRow& row, const Quarter& quarter,
-                  const Groups& groups, RgbD* sum) {
-  std::vector<const double*> weights;
-  std::vector<double> moments;
-  for (std::size_t parity = 0; parity < 4; ++parity) {
-    const std::vector<std::size_t>& group = groups.indices[parity];
-    weights.clear();
-    for (const std::size_t i : group) weights.push_back(integrals.of(i));
-    moments.resize(3 * group.size());
-    channel_moments(weights.data(), group.size(), row.part(parity), quarter.stride, quarter.stride,
-                    moments.data());
-    for (std::size_t k = 0; k < group.size(); ++k) {
-      sum[group[k]] += RgbD(moments[3 * k], moments[3 * k + 1], moments[3 * k + 2]);
-    }
-  }
-}
 
 }  // namespace
 
@@ -213,15 +217,13 @@ Coefficients project_cube_faces(const light::CubeMapSky& sky, const Matrix& rota
   const std::size_t tasks = (quarter.half + rows_a_task - 1) / rows_a_task;
   const Coefficients faces =
       sum_in_blocks(tasks, 6 * size, threads, [&](std::size_t task, Coefficients& sum) {
-        RowIntegrals integrals(quarter, rule, basis);
-        FoldedRow row(quarter);
+        RowIntegrals integrals(quarter, rule, basis, groups);
+        FaceSums sums(quarter, groups);
         for (std::size_t y = task * rows_a_task; y < std::min(quarter.half, (task + 1) * rows_a_task); ++y) {
           integrals.make(y);
-          for (std::size_t face = 0; face < 6; ++face) {
-            row.make(sky.faces[face], y);
-            add_face_row(integrals, row, quarter, groups, sum.data() + face * size);
-          }
+          for (std::size_t face = 0; face < 6; ++face) sums.add_row(integrals, sky.faces[face], y, face);
         }
+        sums.add_to(sum);
       });
   std::vector<TurnedPart> parts;
   for (std::size_t face = 0; face < 6; ++face) {
