@@ -197,11 +197,11 @@ void fold(const float* top, const float* bottom, std::size_t width, double* part
 /// kCount rows of weights at once: enough sums that they do not wait for themselves.
 template <std::size_t kCount>
 HWY_INLINE void add_moments_of(const double* weights, const double* channels, std::size_t stride,
-                               double* sums) {
+                               std::size_t count, double* sums) {
   const Wide d;
   Numbers total[3 * kCount];
   for (std::size_t i = 0; i < 3 * kCount; ++i) total[i] = hn::LoadU(d, sums + i * kSumLanes);
-  for (std::size_t k = 0; k < stride; k += kLanes) {
+  for (std::size_t k = 0; k < count; k += kLanes) {
     const auto red = hn::LoadU(d, channels + k);
     const auto green = hn::LoadU(d, channels + stride + k);
     const auto blue = hn::LoadU(d, channels + 2 * stride + k);
@@ -216,13 +216,33 @@ HWY_INLINE void add_moments_of(const double* weights, const double* channels, st
 }
 
 void add_all_moments(const double* weights, std::size_t rows, const double* channels, std::size_t stride,
-                     double* sums) {
+                     std::size_t count, double* sums) {
   std::size_t r = 0;
-  for (; r + 3 <= rows; r += 3) {
-    add_moments_of<3>(weights + r * stride, channels, stride, sums + 3 * r * kSumLanes);
+  for (; r + 4 <= rows; r += 4) {
+    add_moments_of<4>(weights + r * stride, channels, stride, count, sums + 3 * r * kSumLanes);
   }
-  if (rows - r == 2) add_moments_of<2>(weights + r * stride, channels, stride, sums + 3 * r * kSumLanes);
-  if (rows - r == 1) add_moments_of<1>(weights + r * stride, channels, stride, sums + 3 * r * kSumLanes);
+  if (rows - r == 3)
+    add_moments_of<3>(weights + r * stride, channels, stride, count, sums + 3 * r * kSumLanes);
+  if (rows - r == 2)
+    add_moments_of<2>(weights + r * stride, channels, stride, count, sums + 3 * r * kSumLanes);
+  if (rows - r == 1)
+    add_moments_of<1>(weights + r * stride, channels, stride, count, sums + 3 * r * kSumLanes);
+}
+
+void scale(double* weight, std::size_t blocks, const double* sums) {
+  const Wide d;
+  for (std::size_t u = 0; u < kBlockDirections; u += kLanes) {
+    auto total = hn::Zero(d);
+    for (std::size_t b = 0; b < blocks; ++b) {
+      total = hn::Add(total, hn::LoadU(d, weight + b * kBlockDirections + u));
+    }
+    const auto is_zero = hn::Eq(total, hn::Zero(d));
+    const auto factor = hn::Div(hn::LoadU(d, sums + u), hn::IfThenElse(is_zero, hn::Set(d, 1.0), total));
+    for (std::size_t b = 0; b < blocks; ++b) {
+      double* out = weight + b * kBlockDirections + u;
+      hn::StoreU(hn::Mul(factor, hn::LoadU(d, out)), d, out);
+    }
+  }
 }
 
 void add_blocks(const double* weight, const double* values, std::size_t blocks, const std::size_t* place,
@@ -271,6 +291,7 @@ namespace {
 HWY_EXPORT(fold);
 HWY_EXPORT(moments_of_rows);
 HWY_EXPORT(add_all_moments);
+HWY_EXPORT(scale);
 HWY_EXPORT(add_blocks);
 HWY_EXPORT(nodes);
 
@@ -283,8 +304,11 @@ void row_moments(const float* const* rows, const RowWeights& weights, double* ro
   HWY_DYNAMIC_DISPATCH(moments_of_rows)(rows, weights, room, out);
 }
 void add_moments(const double* weights, std::size_t rows, const double* channels, std::size_t stride,
-                 double* sums) {
-  HWY_DYNAMIC_DISPATCH(add_all_moments)(weights, rows, channels, stride, sums);
+                 std::size_t count, double* sums) {
+  HWY_DYNAMIC_DISPATCH(add_all_moments)(weights, rows, channels, stride, count, sums);
+}
+void scale_weights(double* weight, std::size_t blocks, const double* sums) {
+  HWY_DYNAMIC_DISPATCH(scale)(weight, blocks, sums);
 }
 void add_weighted_blocks(const double* weight, const double* values, std::size_t blocks,
                          const std::size_t* place, std::size_t size, bool is_first, double* table,

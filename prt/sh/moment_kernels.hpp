@@ -39,10 +39,13 @@ void fold_rows(const float* top, const float* bottom, std::size_t width, double*
 
 /// Sums that add_moments() keeps for each moment and channel, to be added at the end.
 inline constexpr std::size_t kSumLanes = 8;
-/// sums[(3 r + c) kSumLanes …] += parts of the sum over k < stride of weights[r stride + k] channels[c stride + k], for
-/// r < rows; stride a multiple of kMomentLanes.
+/// sums[(3 r + c) kSumLanes …] += parts of the sum over k < count of weights[r stride + k] channels[c stride + k], for
+/// r < rows; count a multiple of kMomentLanes.
 void add_moments(const double* weights, std::size_t rows, const double* channels, std::size_t stride,
-                 double* sums);
+                 std::size_t count, double* sums);
+
+/// Scales the weights of blocks of 16 so that those at place u of all blocks sum to sums[u]; zeros stay.
+void scale_weights(double* weight, std::size_t blocks, const double* sums);
 
 /// table[place[i] stride + u] = (is_first ? 0 : itself) + sum over blocks of weight[16 block + u] times value i of
 /// direction u of the block, in the blocked layout of batch.hpp, for u < 16 and i < size.

@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "prt/sh/aligned.hpp"
 #include "prt/sh/lighting.hpp"
 #include "prt/sh/moment_kernels.hpp"
 #include "prt/sh/projection_parts.hpp"
@@ -79,7 +80,7 @@ struct AzimuthTable {
   bool is_folded = false;
   std::size_t count = 0;   // columns, or half of them where folded
   std::size_t stride = 0;  // three numbers a column, padded
-  std::vector<double> weights;
+  AlignedVector<double> weights;
 
   AzimuthTable(int columns, int bands, int start_half_turns, Column shape)
       : is_folded(columns % 2 == 0),
@@ -122,7 +123,7 @@ class AzimuthMoments {
 
  private:
   RowWeights weights_;
-  std::vector<double> room_;
+  AlignedVector<double> room_;
   std::vector<double> moments_;
 };
 

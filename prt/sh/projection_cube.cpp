@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "prt/sh/aligned.hpp"
 #include "prt/sh/batch.hpp"
 #include "prt/sh/moment_kernels.hpp"
 #include "prt/sh/projection_parts.hpp"
@@ -46,11 +47,16 @@ Matrix face_frame(std::size_t face) {
 struct Quarter {
   int size = 0;
   std::size_t half = 0;
-  std::size_t stride = 0;       // half, padded
+  std::size_t count = 0;  // half, padded
+  std::size_t stride =
+      0;  // count and an odd number of cache lines more: rows do not share their places in the cache
   std::vector<double> corners;  // solid angle between the face's centre and corner (x, y), symmetric: [y][x]
 
   explicit Quarter(int face_size)
-      : size(face_size), half((static_cast<std::size_t>(face_size) + 1) / 2), stride(padded(half)) {
+      : size(face_size),
+        half((static_cast<std::size_t>(face_size) + 1) / 2),
+        count(padded(half)),
+        stride(count + 8) {
     const std::size_t width = half + 1;
     corners.resize(width * width);
     for (std::size_t y = 0; y < width; ++y) {
@@ -101,12 +107,12 @@ class RowIntegrals {
         basis_(basis),
         groups_(groups),
         width_(rule.nodes.size() * kBlockDirections) {
-    const std::size_t blocks = quarter.stride / kBlockDirections;
+    const std::size_t blocks = quarter.count / kBlockDirections;
     for (auto* values : {&s_, &ds_}) values->resize(width_ * blocks);
     for (auto* values : {&x_, &y_, &z_, &weight_}) values->resize(width_ * rule.nodes.size());
     values_.resize(blocked_size(basis.bands(), width_));
     table_.resize(groups.indices.size() * quarter.stride);
-    for (std::size_t x = 0; x < quarter.stride; ++x) {
+    for (std::size_t x = 0; x < quarter.count; ++x) {
       for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
         const std::size_t at = x / kBlockDirections * width_ + i * kBlockDirections + x % kBlockDirections;
         s_[at] = quarter.edge(x) + (1.0 + rule.nodes[i]) / quarter.size;
@@ -116,7 +122,7 @@ class RowIntegrals {
   }
 
   void make(std::size_t row) {
-    for (std::size_t x = 0; x < quarter_.stride; x += kBlockDirections) make_block(row, x);
+    for (std::size_t x = 0; x < quarter_.count; x += kBlockDirections) make_block(row, x);
   }
   [[nodiscard]] const double* of(std::size_t place) const { return table_.data() + place * quarter_.stride; }
 
@@ -129,9 +135,13 @@ class RowIntegrals {
       face_nodes(s_.data() + from, ds_.data() + from, t, rule_.weights[j], width_, x_.data() + to,
                  y_.data() + to, z_.data() + to, weight_.data() + to);
     }
-    scale_weights(row, x);
+    std::array<double, kBlockDirections> solid_angles{};
+    for (std::size_t u = 0; u < kBlockDirections && x + u < quarter_.half; ++u) {
+      solid_angles[u] = quarter_.solid_angle(x + u, row);
+    }
+    scale_weights(weight_.data(), weight_.size() / kBlockDirections, solid_angles.data());
     for (std::size_t j = 0; j < rule_.nodes.size(); ++j) {
-      const auto part = [&](const std::vector<double>& all) {
+      const auto part = [&](const AlignedVector<double>& all) {
         return std::span<const double>(all).subspan(j * width_, width_);
       };
       basis_.evaluate_blocked({part(x_), part(y_), part(z_)}, values_);
@@ -140,22 +150,12 @@ class RowIntegrals {
     }
   }
 
-  /// Weights of a texel sum to its solid angle.
-  void scale_weights(std::size_t row, std::size_t x) {
-    std::array<double, kBlockDirections> scale{};
-    for (std::size_t k = 0; k < weight_.size(); ++k) scale[k % kBlockDirections] += weight_[k];
-    for (std::size_t u = 0; u < kBlockDirections; ++u) {
-      if (x + u < quarter_.half) scale[u] = quarter_.solid_angle(x + u, row) / scale[u];
-    }
-    for (std::size_t k = 0; k < weight_.size(); ++k) weight_[k] *= scale[k % kBlockDirections];
-  }
-
   const Quarter& quarter_;
   const GaussLegendre& rule_;
   const BatchBasis<double>& basis_;
   const Groups& groups_;
   std::size_t width_;  // nodes of 16 texels with the same t
-  std::vector<double> s_, ds_, x_, y_, z_, weight_, values_, table_;
+  AlignedVector<double> s_, ds_, x_, y_, z_, weight_, values_, table_;
 };
 
 /// The sums of one task, not yet added up over the lanes of their vectors.
@@ -175,7 +175,8 @@ class FaceSums {
     for (std::size_t parity = 0; parity < 4; ++parity) {
       const std::size_t first = groups_.firsts[parity];
       add_moments(integrals.of(first), groups_.firsts[parity + 1] - first,
-                  parts_.data() + 3 * parity * quarter_.stride, quarter_.stride, sums_of(face, first));
+                  parts_.data() + 3 * parity * quarter_.stride, quarter_.stride, quarter_.count,
+                  sums_of(face, first));
     }
   }
 
@@ -200,8 +201,8 @@ class FaceSums {
 
   const Quarter& quarter_;
   const Groups& groups_;
-  std::vector<double> parts_;
-  std::vector<double> sums_;
+  AlignedVector<double> parts_;
+  AlignedVector<double> sums_;
 };
 
 }  // namespace
