@@ -272,7 +272,7 @@ void evaluate_blocks_of(const RecurrenceTable<T>& table, const DirectionBlocks<T
 
 // ---------------------------------------------------------------- sums over all coefficients
 
-/// What closed forms give their values to: three sums.
+/// What closed forms give their values to: three sums, of even i and of odd, so that they wait less for themselves.
 template <class T>
 struct Accumulate {
   const T* coefficients;
@@ -280,7 +280,8 @@ struct Accumulate {
   HWY_INLINE void operator()(std::size_t i, Vec<T> value) const {
     const Tag<T> d;
     for (std::size_t c = 0; c < 3; ++c) {
-      sums[c] = hn::MulAdd(hn::Set(d, coefficients[3 * i + c]), value, sums[c]);
+      auto& sum = sums[3 * (i % 2) + c];
+      sum = hn::MulAdd(hn::Set(d, coefficients[3 * i + c]), value, sum);
     }
   }
 };
@@ -289,10 +290,10 @@ template <int kBands, class T>
 void sum_closed(const T* coefficients, const DirectionBlocks<T>& in, T* const* out) {
   const Tag<T> d;
   for (std::size_t k = 0; k < in.count; k += kLanes<T>) {
-    Vec<T> sums[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    Vec<T> sums[6] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
     evaluate_closed<kBands>(d, hn::LoadU(d, in.x + k), hn::LoadU(d, in.y + k), hn::LoadU(d, in.z + k),
                             Accumulate<T>{coefficients, sums});
-    for (std::size_t c = 0; c < 3; ++c) hn::StoreU(sums[c], d, out[c] + k);
+    for (std::size_t c = 0; c < 3; ++c) hn::StoreU(hn::Add(sums[c], sums[3 + c]), d, out[c] + k);
   }
 }
 
