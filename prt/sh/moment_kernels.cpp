@@ -248,16 +248,22 @@ void scale(double* weight, std::size_t blocks, const double* sums) {
 void add_blocks(const double* weight, const double* values, std::size_t blocks, const std::size_t* place,
                 std::size_t size, bool is_first, double* table, std::size_t stride) {
   const Wide d;
+  constexpr std::size_t kVectors = kBlockDirections / kLanes;
   for (std::size_t i = 0; i < size; ++i) {
-    for (std::size_t u = 0; u < kBlockDirections; u += kLanes) {
-      double* out = table + place[i] * stride + u;
-      auto sum = is_first ? hn::Zero(d) : hn::LoadU(d, out);
-      for (std::size_t b = 0; b < blocks; ++b) {
-        sum = hn::MulAdd(hn::LoadU(d, weight + b * kBlockDirections + u),
-                         hn::LoadU(d, values + (b * size + i) * kBlockDirections + u), sum);
-      }
-      hn::StoreU(sum, d, out);
+    double* out = table + place[i] * stride;
+    const double* value = values + i * kBlockDirections;
+    Numbers sum[kVectors];
+    for (std::size_t u = 0; u < kVectors; ++u) {
+      sum[u] = is_first ? hn::Zero(d) : hn::LoadU(d, out + u * kLanes);
     }
+    for (std::size_t b = 0; b < blocks; ++b) {
+      const double* w = weight + b * kBlockDirections;
+      const double* v = value + b * size * kBlockDirections;
+      for (std::size_t u = 0; u < kVectors; ++u) {
+        sum[u] = hn::MulAdd(hn::LoadU(d, w + u * kLanes), hn::LoadU(d, v + u * kLanes), sum[u]);
+      }
+    }
+    for (std::size_t u = 0; u < kVectors; ++u) hn::StoreU(sum[u], d, out + u * kLanes);
   }
 }
 

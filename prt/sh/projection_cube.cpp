@@ -48,8 +48,8 @@ struct Quarter {
   int size = 0;
   std::size_t half = 0;
   std::size_t count = 0;  // half, padded
-  std::size_t stride =
-      0;  // count and an odd number of cache lines more: rows do not share their places in the cache
+  // The count and one cache line: rows do not share their places in the cache.
+  std::size_t stride = 0;
   std::vector<double> corners;  // solid angle between the face's centre and corner (x, y), symmetric: [y][x]
 
   explicit Quarter(int face_size)
@@ -106,11 +106,12 @@ class RowIntegrals {
         rule_(rule),
         basis_(basis),
         groups_(groups),
-        width_(rule.nodes.size() * kBlockDirections) {
+        width_(rule.nodes.size() * kBlockDirections),
+        together_(std::max<std::size_t>(1, kNumbersTogether / (width_ * groups.indices.size()))) {
     const std::size_t blocks = quarter.count / kBlockDirections;
     for (auto* values : {&s_, &ds_}) values->resize(width_ * blocks);
     for (auto* values : {&x_, &y_, &z_, &weight_}) values->resize(width_ * rule.nodes.size());
-    values_.resize(blocked_size(basis.bands(), width_));
+    values_.resize(blocked_size(basis.bands(), width_ * std::min(together_, rule.nodes.size())));
     table_.resize(groups.indices.size() * quarter.stride);
     for (std::size_t x = 0; x < quarter.count; ++x) {
       for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
@@ -127,6 +128,8 @@ class RowIntegrals {
   [[nodiscard]] const double* of(std::size_t place) const { return table_.data() + place * quarter_.stride; }
 
  private:
+  static constexpr std::size_t kNumbersTogether = 2048;
+
   void make_block(std::size_t row, std::size_t x) {
     const std::size_t from = x * rule_.nodes.size();
     for (std::size_t j = 0; j < rule_.nodes.size(); ++j) {
@@ -140,13 +143,15 @@ class RowIntegrals {
       solid_angles[u] = quarter_.solid_angle(x + u, row);
     }
     scale_weights(weight_.data(), weight_.size() / kBlockDirections, solid_angles.data());
-    for (std::size_t j = 0; j < rule_.nodes.size(); ++j) {
+    for (std::size_t j = 0; j < rule_.nodes.size(); j += together_) {
+      const std::size_t count = std::min(together_, rule_.nodes.size() - j) * width_;
       const auto part = [&](const AlignedVector<double>& all) {
-        return std::span<const double>(all).subspan(j * width_, width_);
+        return std::span<const double>(all).subspan(j * width_, count);
       };
       basis_.evaluate_blocked({part(x_), part(y_), part(z_)}, values_);
-      add_weighted_blocks(part(weight_).data(), values_.data(), rule_.nodes.size(), groups_.places.data(),
-                          groups_.places.size(), j == 0, table_.data() + x, quarter_.stride);
+      add_weighted_blocks(part(weight_).data(), values_.data(), count / kBlockDirections,
+                          groups_.places.data(), groups_.places.size(), j == 0, table_.data() + x,
+                          quarter_.stride);
     }
   }
 
@@ -154,7 +159,8 @@ class RowIntegrals {
   const GaussLegendre& rule_;
   const BatchBasis<double>& basis_;
   const Groups& groups_;
-  std::size_t width_;  // nodes of 16 texels with the same t
+  std::size_t width_;     // nodes of 16 texels with the same t
+  std::size_t together_;  // how many t are evaluated at a time
   AlignedVector<double> s_, ds_, x_, y_, z_, weight_, values_, table_;
 };
 
