@@ -4,6 +4,7 @@
 #include <array>
 #include <string>
 
+#include "prt/sh/aligned.hpp"
 #include "prt/sh/batch_kernels.hpp"
 #include "prt/sh/recurrence.hpp"
 #include "reference/base/error.hpp"
@@ -153,7 +154,7 @@ void BatchBasis<Real>::evaluate(const Directions<Real>& directions, std::span<Re
   for_blocks(directions, kGroup, threads, [&](std::size_t first, const DirectionBlocks<Real>& in) {
     const std::size_t together =
         std::max<std::size_t>(1, 4096 / (kBlockDirections * size)) * kBlockDirections;
-    std::vector<Real> blocks(together * size);
+    AlignedVector<Real> blocks(together * size);
     for (std::size_t k = 0; k < in.count; k += together) {
       const std::size_t length = std::min(together, in.count - k);
       evaluate_blocks(table_, {in.x + k, in.y + k, in.z + k, length}, blocks.data());

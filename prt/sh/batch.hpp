@@ -10,7 +10,8 @@
 
 namespace plumbline::sh {
 
-/// Unit directions as three arrays of the same length.
+/// Unit directions as three arrays of the same length. Arrays here and below may start anywhere; those that start on a
+/// cache line (aligned.hpp) are fastest.
 template <class Real>
 struct Directions {
   std::span<const Real> x;

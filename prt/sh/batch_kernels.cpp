@@ -210,10 +210,10 @@ HWY_NOINLINE void store_unrolled(const RecurrenceTable<T>& table, const Directio
   store_unrolled_columns<kBands, 0>(table, at, azimuth, table.steps.data(), places);
 }
 
-/// Calls wide(first) for groups of kTogether vectors and narrow(first) for the vectors left over.
-template <class T, class Wide, class Narrow>
+/// Calls wide(first) for groups of kCount vectors and narrow(first) for the vectors left over.
+template <class T, std::size_t kCount = kTogether<T>, class Wide, class Narrow>
 HWY_INLINE void for_vectors(std::size_t count, const Wide& wide, const Narrow& narrow) {
-  constexpr std::size_t kGroup = kTogether<T> * kLanes<T>;
+  constexpr std::size_t kGroup = kCount * kLanes<T>;
   std::size_t k = 0;
   for (; k + kGroup <= count; k += kGroup) wide(k);
   for (; k < count; k += kLanes<T>) narrow(k);
@@ -221,8 +221,8 @@ HWY_INLINE void for_vectors(std::size_t count, const Wide& wide, const Narrow& n
 
 template <int kBands, class T>
 void store_few(const RecurrenceTable<T>& table, const DirectionBlocks<T>& in, T* out) {
-  for_vectors<T>(
-      in.count, [&](std::size_t k) { store_unrolled<kBands, kTogether<T>>(table, in, k, out); },
+  for_vectors<T, 2>(
+      in.count, [&](std::size_t k) { store_unrolled<kBands, 2>(table, in, k, out); },
       [&](std::size_t k) { store_unrolled<kBands, 1>(table, in, k, out); });
 }
 
@@ -272,7 +272,7 @@ void evaluate_blocks_of(const RecurrenceTable<T>& table, const DirectionBlocks<T
 
 // ---------------------------------------------------------------- sums over all coefficients
 
-/// What closed forms give their values to: three sums.
+/// What closed forms give their values to: three sums, of even i and of odd, so that they wait less for themselves.
 template <class T>
 struct Accumulate {
   const T* coefficients;
@@ -280,7 +280,8 @@ struct Accumulate {
   HWY_INLINE void operator()(std::size_t i, Vec<T> value) const {
     const Tag<T> d;
     for (std::size_t c = 0; c < 3; ++c) {
-      sums[c] = hn::MulAdd(hn::Set(d, coefficients[3 * i + c]), value, sums[c]);
+      auto& sum = sums[3 * (i % 2) + c];
+      sum = hn::MulAdd(hn::Set(d, coefficients[3 * i + c]), value, sum);
     }
   }
 };
@@ -289,10 +290,10 @@ template <int kBands, class T>
 void sum_closed(const T* coefficients, const DirectionBlocks<T>& in, T* const* out) {
   const Tag<T> d;
   for (std::size_t k = 0; k < in.count; k += kLanes<T>) {
-    Vec<T> sums[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    Vec<T> sums[6] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
     evaluate_closed<kBands>(d, hn::LoadU(d, in.x + k), hn::LoadU(d, in.y + k), hn::LoadU(d, in.z + k),
                             Accumulate<T>{coefficients, sums});
-    for (std::size_t c = 0; c < 3; ++c) hn::StoreU(sums[c], d, out[c] + k);
+    for (std::size_t c = 0; c < 3; ++c) hn::StoreU(hn::Add(sums[c], sums[3 + c]), d, out[c] + k);
   }
 }
 

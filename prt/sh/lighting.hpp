@@ -37,14 +37,16 @@ enum class Window { none, hann, lanczos, gauss, laplacian };
 /// - lat-long: integrated exactly, be texels regions of constant radiance or interpolated bilinearly: the error is
 ///   rounding, 1e-14.
 /// - cube map: Gauss nodes inside each texel (bilinear: each cell between texel centres), weights summing to its
-///   exact solid angle: relative error below 1e-9 (2e-7 for faces of a single texel).
+///   exact solid angle: relative error below 1e-9 (2e-7 for faces of a single texel). Nearest lookup to 64 bands makes use
+///   of the faces' symmetries, to the same error.
 /// - angular map: the same over the part inside the disc, all weights summing to 4 pi: relative error 1e-8.
 /// - analytic: Gauss-Legendre over each hemisphere of the sky's Y times uniform nodes, max(512, 8 bands) rows
 ///   and twice as many columns: float rounding for smooth skies and for a jump at the horizon, O(1/rows^2)
 ///   for other kinks (two-lobes: below 1e-6 for up to 20 bands).
 ///
-/// Same bits for any number of threads (0 = all). Cost: O(texels bands) for lat-long, O(texels bands^2) for
-/// the others, and O(bands^3) for turning lat-long and analytic results into world axes.
+/// Same bits for any number of threads (0 = all), but for the last ones on machines with other vector
+/// instructions. Cost: O(texels bands) for lat-long, O(texels bands^2) for the others, and O(bands^4) for turning
+/// the results into world axes.
 /// @throws InputError for an empty image, a non-finite texel (named), a matrix that is no rotation, or bands
 /// out of range
 [[nodiscard]] ShRgb project_radiance(const light::Environment& environment, int bands, int threads = 0);

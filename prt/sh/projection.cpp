@@ -5,41 +5,22 @@
 #include <functional>
 #include <string>
 
+#include "prt/sh/aligned.hpp"
 #include "prt/sh/lighting.hpp"
+#include "prt/sh/moment_kernels.hpp"
+#include "prt/sh/projection_parts.hpp"
 #include "prt/sh/quadrature.hpp"
-#include "prt/sh/rotation.hpp"
 #include "prt/sh/texels.hpp"
 #include "prt/sh/zonal.hpp"
 #include "reference/base/error.hpp"
 #include "reference/base/parallel.hpp"
 
 namespace plumbline::sh {
-namespace {
 
-using Coefficients = std::vector<RgbD>;
-using Matrix = glm::dmat3;
+namespace {
 
 std::size_t size_of(int bands) {
   return static_cast<std::size_t>(coefficient_count(bands));
-}
-
-/// Sum over i = 0 … count-1 of what add(i, sum) adds. The blocks and their places in the sum depend on count
-/// only, so that the bits do not depend on the threads.
-Coefficients sum_in_blocks(std::size_t count, int bands, int threads,
-                           const std::function<void(std::size_t, Coefficients&)>& add) {
-  constexpr std::size_t kBlocks = 32;
-  const std::size_t blocks = std::min(count, kBlocks);
-  std::vector<Coefficients> partial(blocks);
-  parallel_for(blocks, threads, [&](std::size_t block) {
-    Coefficients sum(size_of(bands), RgbD(0.0));
-    for (std::size_t i = block * count / blocks; i < (block + 1) * count / blocks; ++i) add(i, sum);
-    partial[block] = std::move(sum);
-  });
-  Coefficients total(size_of(bands), RgbD(0.0));
-  for (const Coefficients& part : partial) {
-    for (std::size_t i = 0; i < total.size(); ++i) total[i] += part[i];
-  }
-  return total;
 }
 
 // ---------------------------------------------------------------- grids with a polar axis
@@ -66,50 +47,85 @@ struct Ring {
 /// falls to 0 at the middles of the columns beside it (the periodic sum of such hats where they overlap).
 enum class Column { point, box, hat };
 
-/// integral of cos(m phi) and sin(m phi) times the column's shape: [column][cos 0 … n-1, sin 0 … n-1], for columns
-/// that start at phi = start_half_turns * pi. With w the width, b = (2 / m) sin(m w / 2) times the value at the
-/// middle for a box, and b^2 / w for a hat, which is a box convolved with a box, over w.
-std::vector<double> azimuth_table(int columns, int bands, int start_half_turns, Column shape) {
-  std::vector<double> table;
-  table.reserve(2 * static_cast<std::size_t>(columns) * static_cast<std::size_t>(bands));
-  std::vector<double> scale;
-  for (int m = 0; m < bands; ++m) {
-    const double width = 2.0 * kPi / columns;
-    const double box = m > 0 ? 2.0 / m * std::sin(0.5 * m * width) : width;
-    scale.push_back(shape == Column::point ? width : shape == Column::box ? box : box * box / width);
-    if (start_half_turns % 2 != 0 && m % 2 == 1) scale.back() = -scale.back();
-  }
-  // The angle m pi (2c + 1) / columns is reduced as an integer, so that it is exact for every m.
-  const auto angle = [&](int m, int column) {
-    const long long turns = static_cast<long long>(m) * (2LL * column + 1) % (2LL * columns);
-    return kPi * static_cast<double>(turns) / columns;
-  };
-  for (int column = 0; column < columns; ++column) {
-    for (int m = 0; m < bands; ++m) {
-      table.push_back(scale[static_cast<std::size_t>(m)] * std::cos(angle(m, column)));
-    }
-    for (int m = 0; m < bands; ++m) {
-      table.push_back(scale[static_cast<std::size_t>(m)] * std::sin(angle(m, column)));
-    }
-  }
-  return table;
-}
+/// cos and sin of pi j / n for j = 0 … 2n-1, by their symmetries from those of the first quarter.
+struct Circle {
+  std::vector<double> cosine;
+  std::vector<double> sine;
 
-/// Moments of one row: for each of r, g, b the 2 n sums over columns of radiance times the table.
-void azimuth_moments(std::span<const Rgb> row, const std::vector<double>& table, std::size_t stride,
-                     std::vector<double>& moments) {
-  moments.assign(3 * stride, 0.0);
-  double* red = moments.data();
-  double* green = red + stride;
-  double* blue = green + stride;
-  for (std::size_t column = 0; column < row.size(); ++column) {
-    const double* values = table.data() + column * stride;
-    const RgbD radiance(row[column]);
-    for (std::size_t k = 0; k < stride; ++k) red[k] += radiance.r * values[k];
-    for (std::size_t k = 0; k < stride; ++k) green[k] += radiance.g * values[k];
-    for (std::size_t k = 0; k < stride; ++k) blue[k] += radiance.b * values[k];
+  explicit Circle(std::size_t n) : cosine(2 * n), sine(2 * n) {
+    for (std::size_t j = 0; 2 * j <= n; ++j) {
+      const double angle = kPi * static_cast<double>(j) / static_cast<double>(n);
+      const double c = 2 * j == n ? 0.0 : std::cos(angle);
+      const double s = std::sin(angle);
+      for (const bool is_mirrored : {false, true}) {
+        const std::size_t k = is_mirrored ? n - j : j;
+        cosine[k] = is_mirrored ? -c : c;
+        sine[k] = s;
+        if (k == 0 || k == n) continue;
+        cosine[2 * n - k] = cosine[k];
+        sine[2 * n - k] = -s;
+      }
+    }
+    sine[n] = 0.0;
   }
-}
+};
+
+// Half a turn on, cos(m phi) and sin(m phi) are what they were times (-1)^m. So where the number of columns is even,
+// the two halves of a row are first added (for even m) and subtracted (for odd m).
+
+/// integral of cos(m phi) and sin(m phi) times the column's shape, for columns that start at phi = start_half_turns
+/// * pi: rows cos 0, sin 0, cos 1, … of `stride` columns each. With w the width, b = (2 / m) sin(m w / 2) times the value
+/// at the middle for a box, and b^2 / w for a hat, which is a box convolved with a box, over w.
+struct AzimuthTable {
+  bool is_folded = false;
+  std::size_t count = 0;   // columns, or half of them where folded
+  std::size_t stride = 0;  // three numbers a column, padded
+  AlignedVector<double> weights;
+
+  AzimuthTable(int columns, int bands, int start_half_turns, Column shape)
+      : is_folded(columns % 2 == 0),
+        count(static_cast<std::size_t>(is_folded ? columns / 2 : columns)),
+        stride(3 * padded(count)),
+        weights(2 * static_cast<std::size_t>(bands) * stride, 0.0) {
+    const Circle circle(static_cast<std::size_t>(columns));
+    const double width = 2.0 * kPi / columns;
+    for (int m = 0; m < bands; ++m) {
+      const double box = m > 0 ? 2.0 / m * std::sin(0.5 * m * width) : width;
+      double scale = shape == Column::point ? width : shape == Column::box ? box : box * box / width;
+      if (start_half_turns % 2 != 0 && m % 2 == 1) scale = -scale;
+      double* row = weights.data() + 2 * static_cast<std::size_t>(m) * stride;
+      // The middle of column c is at pi (2c + 1) / columns; m times that, reduced as an integer, is exact.
+      const auto turn = 2 * static_cast<std::size_t>(columns);
+      std::size_t place = static_cast<std::size_t>(m) % turn;
+      for (std::size_t c = 0; c < 3 * count; c += 3) {
+        std::fill_n(row + c, 3, scale * circle.cosine[place]);
+        std::fill_n(row + stride + c, 3, scale * circle.sine[place]);
+        place += 2 * static_cast<std::size_t>(m);
+        while (place >= turn) place -= turn;
+      }
+    }
+  }
+};
+
+/// Moments of rows: for each of kRowsTogether rows [cos 0, sin 0, cos 1, …][r, g, b].
+class AzimuthMoments {
+ public:
+  AzimuthMoments(const AzimuthTable& table, int bands)
+      : weights_{table.weights.data(), 2 * static_cast<std::size_t>(bands), table.stride, table.count,
+                 table.is_folded},
+        room_(row_moments_room(weights_.rows)),
+        moments_(kRowsTogether * 3 * weights_.rows) {}
+
+  void make(const std::array<const float*, kRowsTogether>& rows) {
+    row_moments(rows.data(), weights_, room_.data(), moments_.data());
+  }
+  [[nodiscard]] const double* of(std::size_t row) const { return moments_.data() + row * 3 * weights_.rows; }
+
+ private:
+  RowWeights weights_;
+  AlignedVector<double> room_;
+  std::vector<double> moments_;
+};
 
 /// The integral of Q_lm over one row, at the places of y_lm, m >= 0.
 void integrate_rings(const Basis<double>& basis, std::span<const Ring> rings, std::vector<double>& scratch,
@@ -124,48 +140,60 @@ void integrate_rings(const Basis<double>& basis, std::span<const Ring> rings, st
 
 struct Grid {
   std::size_t rows = 0;
-  int columns = 0;
-  std::vector<double> azimuth;                              // azimuth_table
+  AzimuthTable azimuth;
   std::function<std::vector<Ring>(std::size_t row)> rings;  // weights include sin(theta) d theta
-  std::function<void(std::size_t row, std::span<Rgb> radiance)> read;
+  /// Radiance of a row; may use the room it is given.
+  std::function<std::span<const Rgb>(std::size_t row, std::vector<Rgb>& room)> read;
 };
+
+RgbD triple(const double* values) {
+  return {values[0], values[1], values[2]};
+}
+
+/// Adds the products of a row's integrals over theta and its moments.
+void add_row(const std::vector<double>& q, const double* f, int bands, Coefficients& sum) {
+  for (int l = 0; l < bands; ++l) {
+    for (int m = 0; m <= l; ++m) {
+      const auto plus = static_cast<std::size_t>(index(l, m));
+      const double* moment = f + 6 * static_cast<std::size_t>(m);
+      sum[plus] += q[plus] * triple(moment);
+      if (m > 0) sum[static_cast<std::size_t>(index(l, -m))] += q[plus] * triple(moment + 3);
+    }
+  }
+}
 
 Coefficients project_grid(const Grid& grid, int bands, int threads) {
   const Basis<double> basis(bands);
-  const auto n = static_cast<std::size_t>(bands);
-  return sum_in_blocks(grid.rows, bands, threads, [&](std::size_t row, Coefficients& sum) {
-    std::vector<Rgb> radiance(static_cast<std::size_t>(grid.columns));
-    grid.read(row, radiance);
-    std::vector<double> moments;
-    azimuth_moments(radiance, grid.azimuth, 2 * n, moments);
+  constexpr std::size_t kRowsATask = 16;
+  const std::size_t tasks = (grid.rows + kRowsATask - 1) / kRowsATask;
+  return sum_in_blocks(tasks, size_of(bands), threads, [&](std::size_t task, Coefficients& sum) {
+    AzimuthMoments azimuth(grid.azimuth, bands);
+    std::array<std::vector<Rgb>, kRowsTogether> room;
     std::vector<double> scratch;
     std::vector<double> q;
-    integrate_rings(basis, grid.rings(row), scratch, q);
-    const double* f = moments.data();
-    for (int l = 0; l < bands; ++l) {
-      for (int m = 0; m <= l; ++m) {
-        const auto k = static_cast<std::size_t>(m);
-        const auto plus = static_cast<std::size_t>(index(l, m));
-        sum[plus] += q[plus] * RgbD(f[k], f[2 * n + k], f[4 * n + k]);
-        if (m == 0) continue;
-        const auto minus = static_cast<std::size_t>(index(l, -m));
-        sum[minus] += q[plus] * RgbD(f[n + k], f[3 * n + k], f[5 * n + k]);
+    const std::size_t end = std::min(grid.rows, (task + 1) * kRowsATask);
+    for (std::size_t first = task * kRowsATask; first < end; first += kRowsTogether) {
+      const std::size_t count = std::min(kRowsTogether, end - first);
+      std::array<const float*, kRowsTogether> pixels;
+      for (std::size_t k = 0; k < kRowsTogether; ++k) {
+        pixels[k] =
+            k < count ? &grid.read(first + k, room[k])[0].x : pixels[0];  // repeated where rows are missing
+      }
+      azimuth.make(pixels);
+      for (std::size_t k = 0; k < count; ++k) {
+        integrate_rings(basis, grid.rings(first + k), scratch, q);
+        add_row(q, azimuth.of(k), bands, sum);
       }
     }
   });
 }
 
-/// Coefficients of g(M^-1 w) from those of g, M a rotation times the mirror y -> -y: that changes the sign of the sines
-/// (m < 0).
-Coefficients turned_mirror(Coefficients coefficients, int bands, const Matrix& to_world) {
-  for (int l = 1; l < bands; ++l) {
-    for (int m = -l; m < 0; ++m) coefficients[static_cast<std::size_t>(index(l, m))] *= -1.0;
-  }
-  const Matrix rotation(to_world[0], -to_world[1], to_world[2]);
-  return rotate(ShRgb{bands, std::move(coefficients)}, rotation).coefficients;
+Coefficients turned(Coefficients coefficients, int bands, const Matrix& to_world, int threads) {
+  if (to_world == Matrix(1.0)) return coefficients;
+  return turned(std::vector<TurnedPart>{{std::move(coefficients), to_world}}, bands, threads);
 }
 
-/// Grid frame (polar axis +Y, azimuth from +X to +Z) to environment frame. A mirror.
+/// Grid frame (polar axis +Y, azimuth from +X to +Z) to environment frame. A mirror, which is no matter here.
 Matrix grid_to_environment() {
   return Matrix(Vec3d(1.0, 0.0, 0.0), Vec3d(0.0, 0.0, 1.0), Vec3d(0.0, 1.0, 0.0));
 }
@@ -180,12 +208,22 @@ void require_image(const image::Image& image, const std::string& name) {
                      " x " + std::to_string(image.height) + " and " + std::to_string(image.pixels.size()) +
                      " texels");
   }
-  for (std::size_t i = 0; i < count; ++i) {
+}
+
+/// Names the first texel that is not finite.
+void require_finite(const image::Image& image, const std::string& name) {
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     if (is_finite(image.pixels[i])) continue;
     const auto width = static_cast<std::size_t>(image.width);
     throw InputError(name + ": texel (" + std::to_string(i % width) + ", " + std::to_string(i / width) +
                      ") is not finite");
   }
+}
+
+/// Texels that are not finite make the mean not finite: only then is it worth looking for them.
+bool has_finite_mean(const Coefficients& coefficients) {
+  const RgbD& mean = coefficients[0];
+  return std::isfinite(mean.r) && std::isfinite(mean.g) && std::isfinite(mean.b);
 }
 
 void require_square(const image::Image& image, const std::string& name) {
@@ -240,11 +278,7 @@ std::vector<Ring> hat_rings(std::size_t row, std::size_t rows, const GaussLegend
 std::vector<Ring> box_rings(std::size_t row, std::size_t rows, const GaussLegendre& rule) {
   const double step = kPi / static_cast<double>(rows);
   std::vector<Ring> rings;
-  for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
-    const double theta = step * (static_cast<double>(row) + 0.5 + 0.5 * rule.nodes[k]);
-    const double sine = std::sin(theta);
-    rings.push_back({std::cos(theta), sine, 0.5 * step * rule.weights[k] * sine});
-  }
+  append_rings(step * static_cast<double>(row), step * static_cast<double>(row + 1), 1.0, 1.0, rule, rings);
   return rings;
 }
 
@@ -258,18 +292,19 @@ Coefficients project(const light::LatLongSky& sky, const Task& task) {
   const auto width = static_cast<std::size_t>(sky.image.width);
   const int count = gauss_count(task.bands * kPi / sky.image.height, 1e-16);
   const GaussLegendre rule = gauss_legendre(is_bilinear ? count + 1 : count);
-  Grid grid;
-  grid.rows = static_cast<std::size_t>(sky.image.height);
-  grid.columns = sky.image.width;
-  grid.azimuth = azimuth_table(grid.columns, task.bands, -1, is_bilinear ? Column::hat : Column::box);
+  Grid grid{static_cast<std::size_t>(sky.image.height),
+            AzimuthTable(sky.image.width, task.bands, -1, is_bilinear ? Column::hat : Column::box),
+            {},
+            {}};
   grid.rings = [&](std::size_t row) {
     return is_bilinear ? hat_rings(row, grid.rows, rule) : box_rings(row, grid.rows, rule);
   };
-  grid.read = [&](std::size_t row, std::span<Rgb> radiance) {
-    std::copy_n(sky.image.pixels.begin() + static_cast<std::ptrdiff_t>(row * width), width, radiance.begin());
+  grid.read = [&](std::size_t row, std::vector<Rgb>&) {
+    return std::span<const Rgb>(sky.image.pixels).subspan(row * width, width);
   };
-  return turned_mirror(project_grid(grid, task.bands, task.threads), task.bands,
-                       task.rotation * grid_to_environment());
+  Coefficients result = project_grid(grid, task.bands, task.threads);
+  if (!has_finite_mean(result)) require_finite(sky.image, task.name);
+  return turned(std::move(result), task.bands, task.rotation * grid_to_environment(), task.threads);
 }
 
 // Rows are Gauss nodes in cos(theta) over each hemisphere on its own, because skies jump at the horizon.
@@ -277,10 +312,7 @@ Coefficients project(const light::AnalyticSky& sky, const Task& task) {
   const int rows = std::max(512, 8 * task.bands);
   const int columns = 2 * rows;
   const GaussLegendre rule = gauss_legendre(rows / 2);
-  Grid grid;
-  grid.rows = 2 * rule.nodes.size();
-  grid.columns = columns;
-  grid.azimuth = azimuth_table(columns, task.bands, 0, Column::point);
+  Grid grid{2 * rule.nodes.size(), AzimuthTable(columns, task.bands, 0, Column::point), {}, {}};
   const auto ring = [&](std::size_t row) -> Ring {
     const std::size_t half = rule.nodes.size();
     const double sign = row < half ? 1.0 : -1.0;
@@ -288,7 +320,8 @@ Coefficients project(const light::AnalyticSky& sky, const Task& task) {
     return {cosine, std::sqrt((1.0 - cosine) * (1.0 + cosine)), 0.5 * rule.weights[row % half]};
   };
   grid.rings = [&](std::size_t row) { return std::vector<Ring>{ring(row)}; };
-  grid.read = [&](std::size_t row, std::span<Rgb> radiance) {
+  grid.read = [&](std::size_t row, std::vector<Rgb>& radiance) {
+    radiance.resize(static_cast<std::size_t>(columns));
     const Ring at = ring(row);
     for (int column = 0; column < columns; ++column) {
       const double phi = 2.0 * kPi * (column + 0.5) / columns;
@@ -297,9 +330,10 @@ Coefficients project(const light::AnalyticSky& sky, const Task& task) {
       if (!is_finite(value)) throw InputError(task.name + ": radiance is not finite in some direction");
       radiance[static_cast<std::size_t>(column)] = value;
     }
+    return std::span<const Rgb>(radiance);
   };
-  return turned_mirror(project_grid(grid, task.bands, task.threads), task.bands,
-                       task.rotation * grid_to_environment());
+  return turned(project_grid(grid, task.bands, task.threads), task.bands,
+                task.rotation * grid_to_environment(), task.threads);
 }
 
 /// Appends the nodes of a rectangle of the image.
@@ -308,7 +342,7 @@ using AppendNodes = std::function<void(const ImageRectangle& rectangle, std::vec
 /// Sum over the texels of a square image of radiance times the integral of the basis over the texel.
 Coefficients project_texels(const image::Image& image, const Task& task, const AppendNodes& append_nodes) {
   const Basis<double> basis(task.bands);
-  return sum_in_blocks(static_cast<std::size_t>(image.height), task.bands, task.threads,
+  return sum_in_blocks(static_cast<std::size_t>(image.height), size_of(task.bands), task.threads,
                        [&](std::size_t row, Coefficients& sum) {
                          std::vector<ImageNode> nodes;
                          std::vector<double> values(size_of(task.bands));
@@ -375,7 +409,7 @@ Coefficients project_patches(int size, const Task& task, const Patch::TexelAt& t
                              const AppendNodes& append_nodes) {
   const Basis<double> basis(task.bands);
   const auto rows = static_cast<std::size_t>(size) + 1;
-  return sum_in_blocks(rows, task.bands, task.threads, [&](std::size_t row, Coefficients& sum) {
+  return sum_in_blocks(rows, size_of(task.bands), task.threads, [&](std::size_t row, Coefficients& sum) {
     std::vector<ImageNode> nodes;
     std::vector<double> values(size_of(task.bands));
     for (int x = 0; x <= size; ++x) {
@@ -394,28 +428,61 @@ Coefficients project_patches(int size, const Task& task, const Patch::TexelAt& t
 }
 
 /// The linear factors of bilinear interpolation cost one more node.
-GaussLegendre texel_rule(double phase, light::Lookup lookup) {
+int texel_count(double phase, light::Lookup lookup) {
   constexpr double kTexelTolerance = 1e-9;
   const int count = gauss_count(phase, kTexelTolerance);
-  return gauss_legendre(lookup == light::Lookup::bilinear ? count + 1 : count);
+  return lookup == light::Lookup::bilinear ? count + 1 : count;
+}
+GaussLegendre texel_rule(double phase, light::Lookup lookup) {
+  return gauss_legendre(texel_count(phase, lookup));
 }
 
-Coefficients project(const light::CubeMapSky& sky, const Task& task) {
+/// 1 / r^(l + 3) has its poles one face half-width off the plane's centre: as a frequency, 3 + l.
+double cube_phase(int bands, int size) {
+  return 2.0 * (bands + 3) / size;
+}
+
+void require_cube(const light::CubeMapSky& sky, const Task& task) {
+  for (std::size_t face = 0; face < 6; ++face) {
+    require_square(sky.faces[face], task.name + ": cube face " + std::to_string(face));
+  }
+}
+
+bool has_faces_of_one_size(const light::CubeMapSky& sky) {
+  return std::all_of(sky.faces.begin(), sky.faces.end(),
+                     [&](const image::Image& face) { return face.width == sky.faces[0].width; });
+}
+
+Coefficients project_faces_one_by_one(const light::CubeMapSky& sky, const Task& task) {
   Coefficients total(size_of(task.bands), RgbD(0.0));
   for (int face = 0; face < 6; ++face) {
     const image::Image& image = sky.faces[static_cast<std::size_t>(face)];
-    require_square(image, task.name + ": cube face " + std::to_string(face));
-    const int size = image.width;
-    // 1 / r^(l + 3) has its poles one face half-width off the plane's centre: as a frequency, 3 + l.
-    const GaussLegendre rule = texel_rule(2.0 * (task.bands + 3) / size, task.lookup);
+    const GaussLegendre rule = texel_rule(cube_phase(task.bands, image.width), task.lookup);
     const AppendNodes nodes = [&](const ImageRectangle& rectangle, std::vector<ImageNode>& out) {
       append_cube_nodes(face, rectangle, rule, out);
     };
     const auto texel = [&](int x, int y) -> const Rgb& { return image.at(x, y); };
     const Coefficients part = task.lookup == light::Lookup::bilinear
-                                  ? project_patches(size, task, texel, nodes)
+                                  ? project_patches(image.width, task, texel, nodes)
                                   : project_texels(image, task, nodes);
     for (std::size_t i = 0; i < total.size(); ++i) total[i] += part[i];
+  }
+  return total;
+}
+
+Coefficients project(const light::CubeMapSky& sky, const Task& task) {
+  require_cube(sky, task);
+  const bool is_quick =
+      task.lookup == light::Lookup::nearest && task.bands <= kCubeFaceBands && has_faces_of_one_size(sky);
+  const int size = sky.faces[0].width;
+  Coefficients total =
+      is_quick ? project_cube_faces(sky, task.rotation, task.bands,
+                                    texel_count(cube_phase(task.bands, size), task.lookup), task.threads)
+               : project_faces_one_by_one(sky, task);
+  if (!has_finite_mean(total)) {
+    for (std::size_t face = 0; face < 6; ++face) {
+      require_finite(sky.faces[face], task.name + ": cube face " + std::to_string(face));
+    }
   }
   return total;
 }
@@ -437,6 +504,7 @@ double sphere_of_nodes(int count, ImageRectangle (*rectangle)(int size, int x, i
 
 Coefficients project(const light::AngularMapSky& sky, const Task& task) {
   require_square(sky.image, task.name);
+  require_finite(sky.image, task.name);
   const int size = sky.image.width;
   const GaussLegendre rule = texel_rule(2.0 * kPi * (task.bands + 1) / size, task.lookup);
   const AppendNodes nodes = [&](const ImageRectangle& rectangle, std::vector<ImageNode>& out) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "prt/sh/aligned.hpp"
 #include "prt/sh/batch.hpp"
 #include "validation/bench/instruction_set.hpp"
 
@@ -18,7 +19,7 @@ constexpr std::size_t kMany = 100000;
 
 template <class Real>
 struct Sphere {
-  std::vector<Real> x, y, z;
+  sh::AlignedVector<Real> x, y, z;
   explicit Sphere(std::size_t count) {
     std::mt19937 bits(1);
     std::normal_distribution<double> normal;
@@ -42,7 +43,7 @@ void time_directions(benchmark::State& state, std::size_t count, const Work& wor
     work();
     benchmark::ClobberMemory();
   }
-  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * count));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(count));
 }
 
 template <class Real, std::size_t kCount>
@@ -96,7 +97,7 @@ void sh_sum_rgb(benchmark::State& state) {
     function.coefficients.emplace_back(1.0 / (1.0 + static_cast<double>(i)));
   }
   const sh::BatchFunction<Real> sum(function);
-  std::vector<Real> r(kCount), g(kCount), b(kCount);
+  sh::AlignedVector<Real> r(kCount), g(kCount), b(kCount);
   time_directions(state, kCount, [&] { sum.evaluate(in.spans(), {r, g, b}); });
 }
 BENCHMARK(sh_sum_rgb<float, kMany>)
