@@ -109,6 +109,7 @@ std::string provenance(const Report& report) {
 
 std::string contents(const Parts& parts) {
   constexpr std::pair<const char*, const char*> kEntries[] = {{"galleries", "Images"},
+                                                              {"forests", "Intervals"},
                                                               {"charts", "Charts"},
                                                               {"tables", "Tables"},
                                                               {"findings", "Checks"},
@@ -141,6 +142,7 @@ std::string to_html(const Report& report) {
                  {"attention", html::attention(report)},
                  {"headlines", headlines(report)},
                  {"galleries", html::galleries(report)},
+                 {"forests", html::forests(report)},
                  {"charts", html::charts(report)},
                  {"tables", html::tables(report)},
                  {"findings", html::findings(report)},
