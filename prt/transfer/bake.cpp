@@ -102,6 +102,7 @@ PointTransfer shadowed_transfer(const trace::RayCaster& caster, const trace::Sur
 
 Transfer bake(const scene::Scene& scene, const BakeSettings& settings) {
   require_valid(settings);
+  scene::refuse_primitives(scene, "transfer");
   const bool is_traced = settings.kind != Kind::unshadowed;
   const auto count = static_cast<std::size_t>(sh::coefficient_count(settings.bands));
   Transfer result;

@@ -28,7 +28,8 @@ struct BakeSettings {
 /// T_i = (1/pi) integral y_i(w) V(w) max(0, n.w) dw at every vertex. Unshadowed (V = 1) has the closed form
 /// T_lm = A_l y_lm(n) / pi [3]; shadowed is the mean of y_i V over cosine-distributed directions [2], each
 /// vertex with its own randomly shifted point set, so that the error of one says nothing of its neighbour's.
-/// @throws InputError for bands or samples out of range, or a kind that cannot be baked.
+/// @throws InputError for bands or samples out of range, a kind that cannot be baked, or a scene with exact
+/// spheres or discs: transfer lives at vertices.
 [[nodiscard]] Transfer bake(const scene::Scene& scene, const BakeSettings& settings);
 
 /// Coefficients of one point, in double, for checks: bands^2 values and their standard errors.

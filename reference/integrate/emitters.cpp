@@ -31,7 +31,7 @@ EmitterTable::EmitterTable(const scene::Scene& scene) : scene_(&scene) {
 
 // Area density -> solid angle density: p_w = p_A d^2 / cos.
 double EmitterTable::pdf(std::uint32_t triangle, float distance, float cos_emitter) const {
-  if (density_.empty() || !(cos_emitter > 0.0F)) return 0.0;
+  if (triangle >= density_.size() || !(cos_emitter > 0.0F)) return 0.0;
   return density_[triangle] * static_cast<double>(distance) * static_cast<double>(distance) /
          static_cast<double>(cos_emitter);
 }

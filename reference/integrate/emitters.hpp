@@ -28,7 +28,8 @@ class EmitterTable {
   [[nodiscard]] std::optional<EmitterSample> sample(const Vec3& receiver, float pick, const Vec2& u) const;
 
   /// Density per solid angle of drawing, from a receiver `distance` away, the point of `triangle` that is
-  /// seen under |cos| = cos_emitter from its normal; 0 for a triangle that does not emit.
+  /// seen under |cos| = cos_emitter from its normal; 0 for a triangle that does not emit,
+  /// and for spheres and discs: they are met, not drawn.
   [[nodiscard]] double pdf(std::uint32_t triangle, float distance, float cos_emitter) const;
 
  private:

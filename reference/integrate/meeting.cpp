@@ -7,7 +7,7 @@ std::optional<Meeting> meet(const World& world, const trace::Ray& ray) {
   if (!hit) return std::nullopt;
   const trace::SurfaceHit surface = trace::surface_hit(world.scene, *hit, ray.direction);
   Meeting meeting{surface.point, Rgb(0.0F), Rgb(0.0F), hit->triangle, hit->distance};
-  const scene::Material& material = world.scene.materials[world.scene.triangle_materials[hit->triangle]];
+  const scene::Material& material = scene::material_of(world.scene, hit->triangle);
   if (surface.is_front || material.is_double_sided) {
     meeting.albedo = scene::albedo_at(world.scene, hit->triangle, hit->barycentrics);
     meeting.emission = material.emission;

@@ -13,8 +13,8 @@ namespace plumbline::integrate {
 struct Meeting {
   trace::SurfacePoint point;
   Rgb albedo{0.0F};
-  Rgb emission{0.0F};  // radiance
-  std::uint32_t triangle = 0;
+  Rgb emission{0.0F};          // radiance
+  std::uint32_t triangle = 0;  // or another surface's number (scene.hpp)
   float distance = 0.0F;
 };
 /// None for a miss.

@@ -145,7 +145,7 @@ void add_irradiance(const World& world, const trace::SurfacePoint& start, int ma
     // 3. On the last bounce only an emitter could still matter: without any, whether the sky is seen is
     // enough.
     const bool is_last = bounce == max_bounces;
-    if (is_last && world.emitters.is_empty()) {
+    if (is_last && !world.is_any_emissive) {
       if (!world.is_sky_black && !world.caster.is_occluded(ray)) {
         add(terms, bounce, RgbD(throughput) * sky_by_direction(world, direction, splits, pdf));
       }

@@ -24,6 +24,8 @@ class World {
   /// A constant sky without suns is sampled best by the cosine alone: zero variance where nothing blocks.
   const bool is_sky_sampled;
   const bool is_sky_black;
+  /// Whether any surface shines, drawn by `emitters` or only met.
+  const bool is_any_emissive;
 };
 
 }  // namespace plumbline::integrate

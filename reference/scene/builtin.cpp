@@ -6,6 +6,7 @@
 
 #include "reference/base/error.hpp"
 #include "reference/scene/cornell.hpp"
+#include "reference/scene/exact_scenes.hpp"
 #include "reference/scene/plaza.hpp"
 #include "reference/scene/shapes.hpp"
 
@@ -89,7 +90,7 @@ struct Entry {
   Scene (*make)();
 };
 
-constexpr std::array<Entry, 7> kEntries = {{
+constexpr std::array<Entry, 11> kEntries = {{
     {"cornell", "32 triangles: the Cornell box from its measured data; area light, colour bleeding",
      make_cornell},
     {"sphere-on-plane",
@@ -105,6 +106,15 @@ constexpr std::array<Entry, 7> kEntries = {{
     {"plaza", "78188 triangles: colonnades, arch, knot sculpture; a detailed scene for skies and suns",
      make_plaza},
     {"convex", "20 triangles: icosahedron, albedo 1; white furnace and unshadowed transfer", make_convex},
+    {"sphere-furnace", "exact sphere seen from inside: emission 1, albedo 0.8; radiance 5 everywhere",
+     [] { return make_sphere_room(); }},
+    {"bowl", "exact half sphere, open above, albedo 0.8; under `white` irradiance 2.618 everywhere",
+     [] { return make_bowl(); }},
+    {"concentric", "two exact spheres facing each other, the inner one shines; radiosity 4/3 and 2/3",
+     [] { return make_concentric_spheres(); }},
+    {"exact-sphere-on-plane",
+     "exact black sphere on a plane of 82 triangles; closed-form ambient occlusion under `white`",
+     [] { return make_sphere_over_plane(); }},
 }};
 
 }  // namespace

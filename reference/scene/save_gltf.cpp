@@ -299,6 +299,7 @@ Json parse_json(std::string_view text, const std::string& where) {
 
 std::string to_glb(const Scene& scene, const std::vector<GlbExtension>& extensions) {
   validate(scene, "scene " + scene.name);
+  refuse_primitives(scene, "glTF of scene " + scene.name);
   Writer writer;
   writer.root["asset"] = {{"version", "2.0"}, {"generator", "Plumbline " PLUMBLINE_VERSION}};
   add_mesh(writer, scene);

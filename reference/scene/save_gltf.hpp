@@ -25,7 +25,7 @@ struct GlbExtension {
 /// one material keep theirs. Materials without triangles, cameras and lights are kept; images become 8-bit
 /// sRGB PNG (an 8-bit source comes back bit for bit, anything finer is rounded). load_gltf of the result
 /// gives equal positions, normals, texture coordinates, colours, materials, cameras and lights.
-/// @throws InputError when the scene does not pass validate(), two extensions have one name, or 4 GiB are not
+/// @throws InputError when the scene does not pass validate() or holds spheres or discs (glTF has none), two extensions have one name, or 4 GiB are not
 /// enough
 [[nodiscard]] std::string to_glb(const Scene& scene, const std::vector<GlbExtension>& extensions = {});
 

@@ -75,7 +75,9 @@ void validate_vertices(const Scene& scene, const std::string& where) {
 
 void validate_triangles(const Scene& scene, const std::string& where) {
   const std::size_t vertices = scene.positions.size();
-  if (scene.triangles.empty()) refuse(where, "has no triangles: 0");
+  if (scene.triangles.empty() && primitive_count(scene) == 0) {
+    refuse(where, "has no triangles, spheres or discs: 0");
+  }
   if (scene.triangle_materials.size() != scene.triangles.size()) {
     refuse(where, fmt::format("{} triangle materials for {} triangles", scene.triangle_materials.size(),
                               scene.triangles.size()));
@@ -92,6 +94,24 @@ void validate_triangles(const Scene& scene, const std::string& where) {
     }
     if (is_degenerate(scene.positions[corners.x], scene.positions[corners.y], scene.positions[corners.z])) {
       refuse(where, fmt::format("triangle {} has no area", t));
+    }
+  }
+}
+
+template <class Primitive>
+void validate_primitives(const Scene& scene, const std::vector<Primitive>& primitives, const char* kind,
+                         const std::string& where) {
+  for (std::size_t i = 0; i < primitives.size(); ++i) {
+    const std::string fault = fault_of(primitives[i]);
+    if (!fault.empty()) refuse(where, fmt::format("{} {}: {}", kind, i, fault));
+    const std::uint32_t material = primitives[i].material;
+    if (material >= scene.materials.size()) {
+      refuse(where,
+             fmt::format("{} {} uses material {}, there are {}", kind, i, material, scene.materials.size()));
+    }
+    if (scene.materials[material].albedo_texture >= 0) {
+      refuse(where, fmt::format("{} {} has no texture coordinates, but its material {} has a texture", kind,
+                                i, material));
     }
   }
 }
@@ -286,6 +306,27 @@ void add_materials(Hasher& hasher, const Scene& scene) {
   }
 }
 
+// Scenes without spheres and discs keep the fingerprint they had before there were any.
+void add_primitives(Hasher& hasher, const Scene& scene) {
+  if (primitive_count(scene) == 0) return;
+  hasher.add(static_cast<std::uint64_t>(scene.spheres.size()));
+  for (const Sphere& sphere : scene.spheres) {
+    hasher.add(sphere.centre);
+    hasher.add(sphere.radius);
+    hasher.add(sphere.material);
+    hasher.add(static_cast<int>(sphere.is_inward));
+    hasher.add(sphere.keep_axis);
+    hasher.add(sphere.keep_min_cosine);
+  }
+  hasher.add(static_cast<std::uint64_t>(scene.discs.size()));
+  for (const Disc& disc : scene.discs) {
+    hasher.add(disc.centre);
+    hasher.add(disc.normal);
+    hasher.add(disc.radius);
+    hasher.add(disc.material);
+  }
+}
+
 }  // namespace
 
 bool is_degenerate(Vec3 a, Vec3 b, Vec3 c) {
@@ -297,7 +338,7 @@ bool is_degenerate(Vec3 a, Vec3 b, Vec3 c) {
 }
 
 Bounds bounds(const Scene& scene) {
-  if (scene.triangles.empty()) return {};
+  if (scene.triangles.empty() && primitive_count(scene) == 0) return {};
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   Bounds result{Vec3(kInfinity), Vec3(-kInfinity)};
   for (const glm::uvec3& corners : scene.triangles) {
@@ -306,12 +347,24 @@ Bounds bounds(const Scene& scene) {
       result.high = glm::max(result.high, scene.positions[corners[k]]);
     }
   }
+  const auto include = [&](const Extent& box) {
+    result.low = glm::min(result.low, Vec3(box.low));
+    result.high = glm::max(result.high, Vec3(box.high));
+  };
+  for (const Sphere& sphere : scene.spheres) include(extent(sphere));
+  for (const Disc& disc : scene.discs) include(extent(disc));
   return result;
 }
 
 void validate(const Scene& scene, const std::string& where) {
   validate_vertices(scene, where);
   validate_triangles(scene, where);
+  validate_primitives(scene, scene.spheres, "sphere", where);
+  validate_primitives(scene, scene.discs, "disc", where);
+  if (scene.triangles.size() + primitive_count(scene) > std::numeric_limits<std::uint32_t>::max()) {
+    refuse(where, fmt::format("{} surfaces, more than a 32-bit index can reach",
+                              scene.triangles.size() + primitive_count(scene)));
+  }
   validate_materials(scene, where);
   validate_lights_and_cameras(scene, where);
 }
@@ -323,7 +376,15 @@ Vec3 geometric_normal(const Scene& scene, std::uint32_t triangle) {
       glm::cross(Vec3d(scene.positions[corners.y]) - a, Vec3d(scene.positions[corners.z]) - a)));
 }
 
-Rgb albedo_at(const Scene& scene, std::uint32_t triangle, Vec2 barycentrics) {
+void refuse_primitives(const Scene& scene, const std::string& where) {
+  if (primitive_count(scene) == 0) return;
+  refuse(where, fmt::format("works on triangles only, the scene has {} exact spheres and {} discs",
+                            scene.spheres.size(), scene.discs.size()));
+}
+
+Rgb albedo_at(const Scene& scene, std::uint32_t surface, Vec2 barycentrics) {
+  if (surface >= scene.triangles.size()) return material_of(scene, surface).albedo;
+  const std::uint32_t triangle = surface;
   const Material& material = scene.materials[scene.triangle_materials[triangle]];
   Rgb albedo = material.albedo;
   if (material.albedo_texture >= 0) {
@@ -353,6 +414,7 @@ std::string fingerprint(const Scene& scene) {
   hasher.add_array(scene.vertex_colors);
   hasher.add_array(scene.triangles);
   hasher.add_array(scene.triangle_materials);
+  add_primitives(hasher, scene);
   add_materials(hasher, scene);
   hasher.add(static_cast<std::uint64_t>(scene.lights.size()));
   for (const light::PunctualLight& light : scene.lights) {

@@ -11,6 +11,7 @@
 #include "reference/image/image.hpp"
 #include "reference/light/punctual.hpp"
 #include "reference/scene/camera.hpp"
+#include "reference/scene/primitive.hpp"
 
 namespace plumbline::scene {
 
@@ -37,7 +38,10 @@ struct Texture {
 
 /// All meshes of a file in one indexed triangle list. Vertex i is positions[i] with normals[i]; vertices keep
 /// the file's order, and are duplicated only where a normal was missing and a crease splits them. A vertex
-/// that no triangle uses and whose normal was missing has the normal +Y.
+/// that no triangle uses and whose normal was missing has the normal +Y. Beside them exact spheres and discs,
+/// with or without any triangle.
+///
+/// A *surface* is numbered by triangles first, then spheres, then discs.
 struct Scene {
   std::string name;
   std::vector<Vec3> positions;
@@ -46,6 +50,8 @@ struct Scene {
   std::vector<Rgb> vertex_colors;  // empty, or one per vertex; linear, multiplies the albedo
   std::vector<glm::uvec3> triangles;
   std::vector<std::uint32_t> triangle_materials;  // one per triangle, index into `materials`
+  std::vector<Sphere> spheres;
+  std::vector<Disc> discs;
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<light::PunctualLight> lights;
@@ -53,7 +59,24 @@ struct Scene {
   std::size_t dropped_degenerate = 0;  // triangles without area that loading left out: worth a warning
 };
 
-/// Axis-aligned bounds of all vertices that a triangle uses.
+/// How many surfaces are not triangles.
+[[nodiscard]] inline std::size_t primitive_count(const Scene& scene) {
+  return scene.spheres.size() + scene.discs.size();
+}
+
+/// Throws InputError ("<where>: <why>") when the scene holds spheres or discs: for work that lives at vertices.
+void refuse_primitives(const Scene& scene, const std::string& where);
+
+/// Material of a surface.
+[[nodiscard]] inline const Material& material_of(const Scene& scene, std::uint32_t surface) {
+  if (surface < scene.triangles.size()) return scene.materials[scene.triangle_materials[surface]];
+  const std::size_t primitive = surface - scene.triangles.size();
+  return scene
+      .materials[primitive < scene.spheres.size() ? scene.spheres[primitive].material
+                                                  : scene.discs[primitive - scene.spheres.size()].material];
+}
+
+/// Axis-aligned bounds of all vertices that a triangle uses, and of the spheres and discs.
 struct Bounds {
   Vec3 low{0.0F};
   Vec3 high{0.0F};
@@ -63,11 +86,12 @@ struct Bounds {
 /// Embree leaves out triangles beyond 1.8e18 without a word.
 inline constexpr float kLargestCoordinate = 1e18F;
 
-/// Throws InputError ("<where>: <relation>: <value>") unless: there is at least one triangle; indices are in
-/// range; positions and normals are finite, positions within kLargestCoordinate; normals are unit length
+/// Throws InputError ("<where>: <relation>: <value>") unless: there is at least one triangle, sphere or disc;
+/// indices are in range; positions and normals are finite, positions within kLargestCoordinate; normals are unit length
 /// (to 1e-3); array sizes agree; albedos (factor, texture, vertex colour) are in [0, 1]; emission is finite
 /// and not negative; lights and cameras are finite, with unit directions and angles in range; no triangle is
-/// degenerate.
+/// degenerate; spheres and discs have radii above 0 (and above 1e-4 of their distance from the origin: nearer
+/// to it floats can place them), unit axes, and materials without texture.
 void validate(const Scene& scene, const std::string& where);
 
 /// A triangle without area: |(b - a) x (c - a)| <= 1e-12 x (longest edge)^2, in double. That is what equal or
@@ -78,8 +102,8 @@ void validate(const Scene& scene, const std::string& where);
 [[nodiscard]] Vec3 geometric_normal(const Scene& scene, std::uint32_t triangle);
 
 /// Albedo at barycentric coordinates (b1, b2 weigh the triangle's second and third vertex): factor x texture
-/// x vertex colour. The scene has passed validate().
-[[nodiscard]] Rgb albedo_at(const Scene& scene, std::uint32_t triangle, Vec2 barycentrics);
+/// x vertex colour. Of a sphere or disc: the factor. The scene has passed validate().
+[[nodiscard]] Rgb albedo_at(const Scene& scene, std::uint32_t surface, Vec2 barycentrics);
 
 /// Albedo at every vertex, taken from the last triangle that uses it (they differ only where triangles of
 /// different materials share a vertex); 0 for a vertex that no triangle uses. The scene has passed validate().

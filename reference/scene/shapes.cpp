@@ -70,6 +70,30 @@ Mesh make_grid(const Vec3d& corner, const Vec3d& edge_u, const Vec3d& edge_v, in
   return mesh;
 }
 
+Mesh make_graded_square(const Vec3d& centre, const Vec3d& axis_u, const Vec3d& axis_v, double finest,
+                        double half_size) {
+  Mesh mesh;
+  const Vec3d normal = glm::cross(axis_u, axis_v);
+  const int rings = std::max(0, static_cast<int>(std::ceil(std::log(half_size / finest) / std::log(4.0))));
+  const double growth = rings == 0 ? 1.0 : std::pow(half_size / finest, 1.0 / rings);
+  for (int ring = 0; ring <= rings; ++ring) {
+    const double half = ring == rings ? half_size : finest * std::pow(growth, ring);
+    for (const glm::dvec2& c : {glm::dvec2(-1, -1), {1, -1}, {1, 1}, {-1, 1}}) {
+      add_vertex(mesh, Vec3(centre + half * (c.x * axis_u + c.y * axis_v)), normal);
+    }
+  }
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  for (Index ring = 0; ring < static_cast<Index>(rings); ++ring) {
+    for (Index k = 0; k < 4; ++k) {  // a trapezium between a side and the next ring's
+      const Index in_a = 4 * ring + k;
+      const Index in_b = 4 * ring + (k + 1) % 4;
+      mesh.triangles.emplace_back(in_a, in_a + 4, in_b + 4);
+      mesh.triangles.emplace_back(in_a, in_b + 4, in_b);
+    }
+  }
+  return mesh;
+}
+
 Mesh make_box(const Vec3d& low, const Vec3d& high) {
   const auto corner = [&](int x, int y, int z) {
     return Vec3d(x ? high.x : low.x, y ? high.y : low.y, z ? high.z : low.z);

@@ -33,6 +33,17 @@ struct ProfilePoint {
 [[nodiscard]] Mesh make_grid(const Vec3d& corner, const Vec3d& edge_u, const Vec3d& edge_v, int columns,
                              int rows);
 
+/// Flat square about `centre` that stands for an infinite plane; axis_u and axis_v are orthogonal unit vectors,
+/// its front has the normal axis_u x axis_v, its sides are at `half_size`. It is made of square rings whose size
+/// grows by at most 4 from `finest` on, so that near the centre floats resolve positions as finely as a small
+/// square's: a hit's rounding is relative to the coordinates of its triangle. 2 + 8 log_4(half_size/finest)
+/// triangles, rounded up.
+/// What is missing outside: from a point of its plane or near it, all directions closer than about
+/// distance/half_size to the horizon. Two such squares at right angles through the same centre are a corner whose
+/// faces see each other, at the distance d from the edge's middle, with the form factor 1/2 - 0.568 d/half_size.
+[[nodiscard]] Mesh make_graded_square(const Vec3d& centre, const Vec3d& axis_u, const Vec3d& axis_v,
+                                      double finest, double half_size);
+
 /// Closed axis-aligned box, 12 triangles, flat, normals outward.
 [[nodiscard]] Mesh make_box(const Vec3d& low, const Vec3d& high);
 

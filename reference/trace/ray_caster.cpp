@@ -1,17 +1,11 @@
 #include "reference/trace/ray_caster.hpp"
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#define PLUMBLINE_EMBREE 4
-#else
-#include <embree3/rtcore.h>
-#define PLUMBLINE_EMBREE 3
-#endif
-
 #include <cstring>
 #include <string>
 
 #include "reference/base/error.hpp"
+#include "reference/trace/analytic_geometry.hpp"
+#include "reference/trace/embree.hpp"
 
 namespace plumbline::trace {
 namespace {
@@ -61,9 +55,19 @@ void copy_triangles(RTCGeometry geometry, const scene::Scene& scene) {
   std::memcpy(out, scene.triangles.data(), scene.triangles.size() * sizeof(glm::uvec3));
 }
 
+void attach_triangles(RTCDevice device, RTCScene hierarchy, const scene::Scene& scene) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  copy_positions(geometry, scene);
+  copy_triangles(geometry, scene);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(hierarchy, geometry);
+  rtcReleaseGeometry(geometry);
+}
+
 }  // namespace
 
 struct RayCaster::Impl {
+  AnalyticShapes shapes;
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
 
@@ -81,12 +85,13 @@ RayCaster::RayCaster(const scene::Scene& scene) : impl_(std::make_unique<Impl>()
   if (impl_->device == nullptr) throw_on_error(nullptr, "device");
   impl_->scene = rtcNewScene(impl_->device);
   throw_on_error(impl_->device, "scene");
-  RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  copy_positions(geometry, scene);
-  copy_triangles(geometry, scene);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(impl_->scene, geometry);
-  rtcReleaseGeometry(geometry);
+  if (!scene.triangles.empty()) attach_triangles(impl_->device, impl_->scene, scene);
+  if (scene::primitive_count(scene) > 0) {
+    impl_->shapes = {scene.spheres, scene.discs, static_cast<std::uint32_t>(scene.triangles.size())};
+    // The boxes are tight around curved surfaces: the faster traversal may miss one that a ray only grazes.
+    rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
+    attach_analytic_shapes(impl_->device, impl_->scene, impl_->shapes);
+  }
   rtcCommitScene(impl_->scene);
   throw_on_error(impl_->device, "building the hierarchy");
 }

@@ -1,4 +1,4 @@
-// reference/trace/ray_caster.hpp: the ray query; with its .cpp the only code that knows Embree.
+// reference/trace/ray_caster.hpp: the ray query; reference/trace is the only code that knows Embree.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +18,13 @@ struct Ray {
 };
 
 struct Hit {
-  std::uint32_t triangle = 0;
-  Vec2 barycentrics{0.0F};  // weights of the triangle's second and third vertex
+  std::uint32_t triangle = 0;  // or the number of another surface of the scene (scene.hpp)
+  Vec2 barycentrics{0.0F};  // weights of the triangle's second and third vertex; other surfaces: analytic.hpp
   float distance = 0.0F;
 };
 
-/// The bounding volume hierarchy over a scene's triangles. Both faces of a triangle stop a ray.
+/// The bounding volume hierarchy over a scene's triangles, spheres and discs. Both faces of a surface stop a
+/// ray.
 /// Safe to query from many threads.
 class RayCaster {
  public:

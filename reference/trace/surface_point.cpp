@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "reference/trace/analytic.hpp"
+
 namespace plumbline::trace {
 namespace {
 
@@ -54,7 +56,10 @@ Vec3 ray_origin(const SurfacePoint& point, const Vec3& direction) {
 
 SurfaceHit surface_hit(const scene::Scene& scene, const Hit& hit, const Vec3& ray_direction) {
   const Vec3 weights(1.0F - hit.barycentrics.x - hit.barycentrics.y, hit.barycentrics.x, hit.barycentrics.y);
-  SurfaceHit result{point_on_triangle(scene, hit.triangle, weights), true};
+  SurfaceHit result{hit.triangle < scene.triangles.size()
+                        ? point_on_triangle(scene, hit.triangle, weights)
+                        : point_on_primitive(scene, hit.triangle, hit.barycentrics),
+                    true};
   if (glm::dot(result.point.geometric_normal, ray_direction) > 0.0F) {
     result.is_front = false;
     result.point.geometric_normal = -result.point.geometric_normal;

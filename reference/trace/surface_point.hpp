@@ -19,7 +19,7 @@ struct SurfacePoint {
 /// Start of a ray that leaves the surface in `direction`, on that side of it.
 [[nodiscard]] Vec3 ray_origin(const SurfacePoint& point, const Vec3& direction);
 
-/// The point of a hit, on the triangle's front (is_front) or turned to its back.
+/// The point of a hit, on the surface's front (is_front) or turned to its back.
 struct SurfaceHit {
   SurfacePoint point;
   bool is_front = true;

@@ -37,6 +37,7 @@ struct Target {
 };
 
 Target vertices_of(const scene::Scene& scene) {
+  if (scene.positions.empty()) throw InputError("scene " + scene.name + ": has no vertices to gather at");
   Target target{{}, trace::vertex_points(scene)};
   for (std::size_t v = 0; v < scene.positions.size(); ++v) {
     target.shown.push_back({scene.positions[v], scene.normals[v]});

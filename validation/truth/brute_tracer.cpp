@@ -163,6 +163,7 @@ std::array<metrics::Estimate, 3> brute_force_irradiance(const scene::Scene& scen
                                                         const BruteForceSettings& settings) {
   constexpr int kMostBounces = 1000;
   scene::validate(scene, kName);
+  scene::refuse_primitives(scene, kName);
   require(scene.lights.empty(), kName, "a scene without punctual lights",
           static_cast<double>(scene.lights.size()));
   require(settings.samples >= 2, kName, "samples >= 2", settings.samples);

@@ -24,7 +24,8 @@ struct BruteForceSettings {
 /// may lie on a surface.
 /// @param normal  unit
 /// @throws InputError for a setting out of range, a normal that is not unit, an invalid scene, and a scene
-/// with punctual lights: without extent they are never met by chance.
+/// with punctual lights (without extent they are never met by chance) or with exact spheres or discs (it
+/// knows triangles only).
 /// Cost: samples x rays of a path x triangles, about 5 ns each.
 [[nodiscard]] std::array<metrics::Estimate, 3> brute_force_irradiance(const scene::Scene& scene,
                                                                       const light::Environment& environment,
