@@ -86,7 +86,8 @@ bool is_flat(const Flatness& f, double significance) {
 namespace {
 
 /// Samples for which `found` is found with probability 0.9, by the pilot's spread.
-int samples_to_find(const TruthCase& one, const Estimator& estimator, double found, const PowerBudget& budget) {
+int samples_to_find(const TruthCase& one, const Estimator& estimator, double found,
+                    const PowerBudget& budget) {
   constexpr double kPower = 0.9;
   const Effort pilot{one.pilot_samples, 1, budget.seed, budget.threads};
   double variance = 0.0;
@@ -136,7 +137,7 @@ std::vector<PowerPoint> power_curve(const TruthCase& one, double found, const Po
 }
 
 bool agrees(const PowerPoint& point) {
-  return point.measured.low <= point.stated_high && point.measured.high >= point.stated_low;
+  return point.measured.low <= point.stated_high && point.measured.high >= point.stated_low;  // false for NaN
 }
 
 PowerPoint false_alarms_between_runs(const TruthCase& one, int samples, const PowerBudget& budget) {

@@ -52,11 +52,11 @@ struct Flatness {
 /// should be: noncentral t with the spread that other estimates showed.
 struct PowerPoint {
   std::string estimator;
-  double bias = 0.0;                // relative, injected; 0: false alarms
-  double stated = 0.0;              // probability
-  double stated_low = 0.0;          // the same at the ends of the spread's own interval
+  double bias = 0.0;        // relative, injected; 0: false alarms
+  double stated = 0.0;      // probability
+  double stated_low = 0.0;  // the same at the ends of the spread's own interval
   double stated_high = 0.0;
-  metrics::Proportion measured;     // interval at the significance of the comparison
+  metrics::Proportion measured;  // interval at the significance of the comparison
 };
 struct PowerBudget {
   std::size_t seeds = 1000;
@@ -68,11 +68,13 @@ struct PowerBudget {
 inline constexpr double kInjectedBiases[] = {0.0, 0.001, 0.003, 0.01, 0.03};
 /// Samples a run are set so that a bias of `found` is found with probability 0.9 (the power of the next ones is then
 /// nearly 1); the spread comes from `seeds` further estimates.
-[[nodiscard]] std::vector<PowerPoint> power_curve(const TruthCase& one, double found, const PowerBudget& budget);
+[[nodiscard]] std::vector<PowerPoint> power_curve(const TruthCase& one, double found,
+                                                  const PowerBudget& budget);
 /// The interval of the measured rate and that of the stated one overlap. False for NaN.
 [[nodiscard]] bool agrees(const PowerPoint& point);
 
 /// A/A: two runs of the same thing with different seeds, Welch's t test; the share that differs.
-[[nodiscard]] PowerPoint false_alarms_between_runs(const TruthCase& one, int samples, const PowerBudget& budget);
+[[nodiscard]] PowerPoint false_alarms_between_runs(const TruthCase& one, int samples,
+                                                   const PowerBudget& budget);
 
 }  // namespace plumbline::checks

@@ -57,6 +57,23 @@ void add_quad(scene::Scene& scene, const Vec3d& corner, const Vec3d& u, const Ve
   add_triangle(scene, corner, corner + u + v, corner + v, material);
 }
 
+void add_sphere(scene::Scene& scene, const Vec3d& centre, double radius, Front front, std::uint32_t material,
+                const Kept& kept) {
+  scene::Sphere sphere;
+  sphere.centre = Vec3(centre);
+  sphere.radius = static_cast<float>(radius);
+  sphere.material = material;
+  sphere.is_inward = front == Front::inward;
+  sphere.keep_axis = unit(kept.axis);
+  sphere.keep_min_cosine = static_cast<float>(kept.min_cosine);
+  scene.spheres.push_back(sphere);
+}
+
+void add_disc(scene::Scene& scene, const Vec3d& centre, const Vec3d& normal, double radius,
+              std::uint32_t material) {
+  scene.discs.push_back({Vec3(centre), unit(normal), static_cast<float>(radius), material});
+}
+
 void add_room(scene::Scene& scene, double size, std::uint32_t material) {
   const Vec3d x(size, 0.0, 0.0);
   const Vec3d y(0.0, size, 0.0);

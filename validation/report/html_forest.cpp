@@ -28,7 +28,8 @@ std::string arrow(double x, double direction) {
 }
 
 std::string mark(const Forest& forest, const Forest::Row& row) {
-  if (!std::isfinite(row.value)) return R"(<text class="mark" x="150" y="15" text-anchor="middle">NaN</text>)";
+  if (!std::isfinite(row.value))
+    return R"(<text class="mark" x="150" y="15" text-anchor="middle">NaN</text>)";
   std::string result;
   if (std::isfinite(row.low) && std::isfinite(row.high) && row.high > row.low) {
     result = fmt::format(R"(<path class="interval" d="M{0:.2f} 10H{1:.2f}M{0:.2f} 6V14M{1:.2f} 6V14"/>)",
@@ -36,15 +37,18 @@ std::string mark(const Forest& forest, const Forest::Row& row) {
   }
   if (is_outside(forest, row.value))
     return result + arrow(position(forest, row.value), row.value > 0.0 ? 1.0 : -1.0);
-  return result + fmt::format(R"(<circle class="mark" cx="{:.2f}" cy="10" r="3"/>)", position(forest, row.value));
+  return result +
+         fmt::format(R"(<circle class="mark" cx="{:.2f}" cy="10" r="3"/>)", position(forest, row.value));
 }
 
 std::string picture(const Forest& forest, const Forest::Row& row) {
   const double low = position(forest, -forest.band);
   const double high = position(forest, forest.band);
   return fmt::format(
-      "<svg viewBox=\"0 0 300 20\" class=\"{}\" aria-hidden=\"true\"><rect class=\"band\" x=\"{:.2f}\" y=\"0\" "
-      "width=\"{:.2f}\" height=\"20\"/><path class=\"edge\" d=\"M{:.2f} 0V20M150 0V20M{:.2f} 0V20\"/>{}</svg>",
+      "<svg viewBox=\"0 0 300 20\" class=\"{}\" aria-hidden=\"true\"><rect class=\"band\" x=\"{:.2f}\" "
+      "y=\"0\" "
+      "width=\"{:.2f}\" height=\"20\"/><path class=\"edge\" d=\"M{:.2f} 0V20M150 0V20M{:.2f} "
+      "0V20\"/>{}</svg>",
       checks::to_string(row.verdict), low, high - low, low, high, mark(forest, row));
 }
 
@@ -61,7 +65,8 @@ std::string axis(const Forest& forest) {
 
 std::string row_markup(const Forest& forest, const Forest::Row& row) {
   return fmt::format(
-      "<tr><th scope=\"row\">{}</th><td class=\"bar\">{}</td><td class=\"number\">{} {}</td><td>{}</td></tr>\n",
+      "<tr><th scope=\"row\">{}</th><td class=\"bar\">{}</td><td class=\"number\">{} "
+      "{}</td><td>{}</td></tr>\n",
       escape_markup(row.name), picture(forest, row), format_interval(row.value, 0.5 * (row.high - row.low)),
       escape_markup(forest.unit), badge(row.verdict));
 }
@@ -77,7 +82,8 @@ std::string forests(const Report& report) {
         forest.caption.empty() ? "" : "<p class=\"caption\">" + escape_markup(forest.caption) + "</p>\n";
     body += fmt::format(
         "<div class=\"table forest\">\n<h3>{}</h3>\n{}<table><thead><tr><th scope=\"col\">case</th>"
-        "<th scope=\"col\">{}</th><th scope=\"col\" class=\"number\">measured</th><th scope=\"col\">verdict</th>"
+        "<th scope=\"col\">{}</th><th scope=\"col\" class=\"number\">measured</th><th "
+        "scope=\"col\">verdict</th>"
         "</tr></thead>\n<tbody>\n{}</tbody></table></div>\n",
         escape_markup(forest.title), caption, axis(forest), rows);
   }
