@@ -42,31 +42,34 @@ Estimator with_bias(Estimator inner, double bias) {
   };
 }
 
-Estimator with_error_factor(Estimator inner, double factor) {
-  return [inner = std::move(inner), factor](const Effort& effort) {
-    Measurement m = inner(effort);
-    m.standard_error *= factor;
-    return m;
-  };
-}
-
 PValues p_values(std::span<const TruthCase> cases, const PValueBudget& budget) {
   constexpr double kLeastNoise = 20.0 * kRounding;
   PValues result;
   result.seeds = budget.seeds;
   for (const TruthCase& one : cases) {
     if (one.is_noiseless) continue;
-    const Estimator estimator = with_error_factor(one.prepare(), budget.error_factor);
-    Effort effort{std::max(budget.samples, one.pilot_samples), 1, truth_seed(budget.seed, one.name, kPilot),
-                  budget.threads};
+    const Estimator estimator = one.prepare();
+    Effort effort{std::max(budget.samples, one.pilot_samples / 4), 1,
+                  truth_seed(budget.seed, one.name, kPilot), budget.threads};
     // Decided on a run that is not counted.
-    if (!(estimator(effort).standard_error > budget.error_factor * kLeastNoise * scale_of(one))) continue;
+    if (!(estimator(effort).standard_error > kLeastNoise * scale_of(one))) continue;
     effort.seed = budget.seed;
     ++result.cases;
-    for (const Measurement& m : estimates(one, estimator, effort, budget.seeds, kPValue))
-      result.values.push_back(p_of(one, m));
+    for (const Measurement& m : estimates(one, estimator, effort, budget.seeds, kPValue)) {
+      result.t.push_back((m.mean - one.truth) / m.standard_error);
+      result.freedom.push_back(m.degrees_of_freedom);
+    }
   }
-  return result;
+  return with_error_factor(std::move(result), 1.0);
+}
+
+PValues with_error_factor(PValues p, double factor) {
+  p.values.clear();
+  for (std::size_t i = 0; i < p.t.size(); ++i) {
+    p.t[i] /= factor;
+    p.values.push_back(metrics::two_sided_p_student(p.t[i], p.freedom[i]));
+  }
+  return p;
 }
 
 Flatness flatness(const PValues& p) {

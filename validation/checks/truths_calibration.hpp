@@ -16,14 +16,14 @@ namespace plumbline::checks {
 /// The estimator of `inner` with everything multiplied by 1 + bias: the fault a test must find. Lives here, not in the
 /// path tracer.
 [[nodiscard]] Estimator with_bias(Estimator inner, double bias);
-/// The same estimates, their standard errors multiplied: a renderer that misjudges its own noise.
-[[nodiscard]] Estimator with_error_factor(Estimator inner, double factor);
 
 // ---------------------------------------------------------------- p values
 /// Two-sided p of each case and seed, one run of 16 randomisations each: uniform if means and standard errors are both
 /// right. `samples` paths a run. Cases without noise, or with less than 20 times float rounding, are left out.
 struct PValues {
   std::vector<double> values;
+  std::vector<double> t;        // the deviations they come from, in standard errors …
+  std::vector<double> freedom;  // … of so many degrees of freedom
   std::size_t cases = 0;
   std::size_t seeds = 0;
 };
@@ -32,10 +32,10 @@ struct PValueBudget {
   std::size_t seeds = 32;
   std::uint64_t seed = 0;
   int threads = 0;
-  /// Standard errors are multiplied by this: 1, or a planted fault.
-  double error_factor = 1.0;
 };
 [[nodiscard]] PValues p_values(std::span<const TruthCase> cases, const PValueBudget& budget);
+/// The p values had all standard errors been `factor` times as large: a renderer that misjudges its own noise.
+[[nodiscard]] PValues with_error_factor(PValues p, double factor);
 
 /// Kolmogorov-Smirnov distance from uniform, and how many are below 0.01 against the binomial law.
 struct Flatness {

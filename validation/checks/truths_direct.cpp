@@ -314,7 +314,7 @@ void add_surface_cases(std::vector<TruthCase>& cases) {
   cases.push_back(named("D18_AdjacentFaces", "Howell C-14",
                         kPi * truth::adjacent_rectangles_form_factor(1, 1, 1),
                         quad({1, 0, 0}, {0, 0, 1}, {0, 1, 0}, true)));
-  const double radius = 0.25;  // flux pi A F over the disc's area pi
+  const double radius = 0.5;  // flux pi A F over the disc's area pi
   cases.push_back(named("D19_SphereToDisc", "F = (1 - 1/sqrt(1 + (r/h)^2))/2",
                         4.0 * kPi * radius * radius * truth::sphere_to_disc_form_factor(1.0, 1.0),
                         mean_over(

@@ -143,15 +143,17 @@ light::Environment scaled_overcast(double factor) {
 std::function<Estimator()> superposition() {
   return [] {
     const scene::Scene scene = dihedral(kPi / 2.0, 0.8, 0.8);
-    const auto cap = [](double radiance) { return sun(tilted(0.6), 0.4, radiance); };
-    light::Environment first = constant_sky(0.0);
-    first.suns = {cap(1.0)};
-    light::Environment both = scaled_overcast(3.0);
-    both.suns = {cap(2.0)};
+    const auto first = [](double factor) {
+      return [factor](const Vec3d& w) { return factor * (1.0 + 0.5 * w.x); };
+    };
+    const auto second = [](double factor) {
+      return [factor](const Vec3d& w) { return factor * (1.0 - 0.5 * w.z * w.y); };
+    };
+    const auto both = [=](const Vec3d& w) { return first(2.0)(w) + second(3.0)(w); };
     const trace::SurfacePoint point = trace::free_point(Vec3(Vec3d(kNear, 0.0, 0.0)), Vec3(kUp));
-    return irradiance_sum({{make_world(scene, both), point, 1.0, 1},
-                           {make_world(scene, first), point, -2.0, 1},
-                           {make_world(scene, scaled_overcast(1.0)), point, -3.0, 1}});
+    return irradiance_sum({{make_world(scene, analytic_sky(both)), point, 1.0, 1},
+                           {make_world(scene, analytic_sky(first(1.0))), point, -2.0, 1},
+                           {make_world(scene, analytic_sky(second(1.0))), point, -3.0, 1}});
   };
 }
 
@@ -170,10 +172,9 @@ std::function<Estimator()> homogeneity() {
 }
 
 void add_linearity_cases(std::vector<TruthCase>& cases) {
-  TruthCase sum =
-      named("D25_Superposition", "E(2 L1 + 3 L2) - 2 E(L1) - 3 E(L2) = 0, relative to the direct part", 0.0,
-            superposition());
-  sum.scale = 2.0 * truth::cap_irradiance(0.4, 0.6, 1.0) + 3.0 * truth::overcast_irradiance(0.0, 1.0) / 2.0;
+  TruthCase sum = named("D25_Superposition", "E(2 L1 + 3 L2) - 2 E(L1) - 3 E(L2) = 0, relative to 5 pi/2",
+                        0.0, superposition());
+  sum.scale = 5.0 * kPi / 2.0;
   cases.push_back(std::move(sum));
   TruthCase four =
       named("D25_Homogeneity", "E(4 L)/E(L) = 4 with the same random numbers", 4.0, homogeneity());
