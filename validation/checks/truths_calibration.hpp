@@ -13,9 +13,8 @@
 
 namespace plumbline::checks {
 
-/// The estimator of `inner` with everything multiplied by 1 + bias: the fault a test must find. Lives here, not in the
-/// path tracer.
-[[nodiscard]] Estimator with_bias(Estimator inner, double bias);
+/// The estimate multiplied by 1 + bias: the fault a test must find. Lives here, not in the path tracer.
+[[nodiscard]] Measurement biased(Measurement m, double bias);
 
 // ---------------------------------------------------------------- p values
 /// Two-sided p of each case and seed, one run of 16 randomisations each: uniform if means and standard errors are both
