@@ -78,6 +78,9 @@ void add_transfer_cases(std::vector<TruthCase>& cases) {
   const Vec3d wall = glm::normalize(Vec3d(3.0, -6.0, 2.0));
   const Vec3d edge = glm::cross(wall, floor);
   const truth::ThreeBands transfer = truth::corner_transfer(floor, wall, 0.8, 0.8);
+  // Relative to the largest coefficient: a small one is the difference of large parts, and counts as little in any image.
+  double largest = 0.0;
+  for (const double value : transfer) largest = std::max(largest, kPi * std::abs(value));
   for (std::size_t i = 0; i < transfer.size(); ++i) {
     // T counts exit radiance of albedo 1: E = pi T under the light y_i.
     cases.push_back(
@@ -89,6 +92,7 @@ void add_transfer_cases(std::vector<TruthCase>& cases) {
                       return irradiance_at(make_world(dihedral(kPi / 2.0, 0.8, 0.8), analytic_sky(sky)),
                                            kFloorPoint, kUp);
                     }));
+    cases.back().scale = largest;
   }
 }
 
