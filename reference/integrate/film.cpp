@@ -6,8 +6,8 @@
 
 namespace plumbline::integrate {
 
-RandomisedMean::RandomisedMean(int samples)
-    : samples_(samples), randomisations_(std::min(kRandomisations, samples)) {}
+RandomisedMean::RandomisedMean(int samples, int randomisations)
+    : samples_(samples), randomisations_(std::min(randomisations, samples)) {}
 
 void RandomisedMean::add(int index, const RgbD& value) {
   sums_[index % randomisations_] += value;
@@ -34,10 +34,10 @@ RgbEstimate RandomisedMean::estimate() const {
   return result;
 }
 
-SamplePlace sample_place(int round, int samples, int sample) {
-  const int randomisations = std::min(kRandomisations, samples);
-  return {static_cast<std::uint32_t>(round * kRandomisations + sample % randomisations),
-          static_cast<std::uint32_t>(sample / randomisations)};
+SamplePlace sample_place(int round, int samples, int sample, int randomisations) {
+  const int used = std::min(randomisations, samples);
+  return {static_cast<std::uint32_t>(round * kMostRandomisations + sample % used),
+          static_cast<std::uint32_t>(sample / used)};
 }
 
 RgbEstimate combined(const RgbEstimate& a, const RgbEstimate& b) {

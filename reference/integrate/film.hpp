@@ -21,13 +21,17 @@ struct RgbEstimate {
 /// spread of single samples says nothing; the means of independent randomisations do. Truths: 15 degrees of
 /// freedom.
 inline constexpr int kRandomisations = 16;
+/// The most and the fewest a run may ask for. Fewer make longer sequences, which converge faster, and a standard error of
+/// fewer degrees of freedom: 2 leave one.
+inline constexpr int kMostRandomisations = 32;
+inline constexpr int kLeastRandomisations = 2;
 
-/// Mean and standard error of n samples dealt round-robin to R = min(16, n) independent randomisations:
+/// Mean and standard error of n samples dealt round-robin to R = min(randomisations, n) independent ones:
 ///   mean = sum / n,  Var(mean) = R / (R - 1) * sum_r c_r^2 (m_r - mean)^2 / n^2,  c_r samples with mean m_r
 ///   in the r-th.
 class RandomisedMean {
  public:
-  explicit RandomisedMean(int samples);
+  explicit RandomisedMean(int samples, int randomisations = kRandomisations);
 
   /// The sample with this number, 0 <= index < samples.
   void add(int index, const RgbD& value);
@@ -36,7 +40,7 @@ class RandomisedMean {
  private:
   int samples_;
   int randomisations_;
-  RgbD sums_[kRandomisations] = {};
+  RgbD sums_[kMostRandomisations] = {};
 };
 
 /// Randomisation and place within it of a sample of a round.
@@ -44,7 +48,8 @@ struct SamplePlace {
   std::uint32_t randomisation = 0;
   std::uint32_t index = 0;
 };
-[[nodiscard]] SamplePlace sample_place(int round, int samples, int sample);
+[[nodiscard]] SamplePlace sample_place(int round, int samples, int sample,
+                                       int randomisations = kRandomisations);
 
 /// Estimates of the same thing from independent rounds, weighted by their samples (weights that do not depend
 /// on the values keep the mean unbiased).

@@ -5,12 +5,12 @@ namespace plumbline::integrate {
 std::optional<Meeting> meet(const World& world, const trace::Ray& ray) {
   const std::optional<trace::Hit> hit = world.caster.closest_hit(ray);
   if (!hit) return std::nullopt;
-  const trace::SurfaceHit surface = trace::surface_hit(world.scene, *hit, ray.direction);
-  Meeting meeting{surface.point, Rgb(0.0F), Rgb(0.0F), hit->triangle, hit->distance};
-  const scene::Material& material = scene::material_of(world.scene, hit->triangle);
-  if (surface.is_front || material.is_double_sided) {
-    meeting.albedo = scene::albedo_at(world.scene, hit->triangle, hit->barycentrics);
-    meeting.emission = material.emission;
+  const trace::SurfaceHit seen = world.surfaces.hit(*hit, ray.direction);
+  Meeting meeting{seen.point, Rgb(0.0F), Rgb(0.0F), hit->triangle, hit->distance};
+  const trace::SurfaceTable::Surface& surface = world.surfaces.surface(hit->triangle);
+  if (seen.is_front || surface.is_double_sided) {
+    meeting.albedo = world.surfaces.albedo(*hit);
+    meeting.emission = surface.emission;
   }
   return meeting;
 }
@@ -28,6 +28,9 @@ bool is_mutually_visible(const World& world, const trace::SurfacePoint& a, const
 }
 
 double emitter_pdf(const World& world, const Meeting& meeting, const Vec3& direction) {
+  if (meeting.triangle >= world.scene.triangles.size()) {
+    return world.emitters.primitive_pdf(meeting.triangle, meeting.point, meeting.distance, direction);
+  }
   const float cos_emitter = -glm::dot(meeting.point.geometric_normal, direction);
   return world.emitters.pdf(meeting.triangle, meeting.distance, cos_emitter);
 }

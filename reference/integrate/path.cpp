@@ -1,8 +1,10 @@
 #include "reference/integrate/path.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "reference/integrate/hemisphere.hpp"
 #include "reference/integrate/meeting.hpp"
@@ -18,24 +20,82 @@ float received_cosine(const trace::SurfacePoint& point, const Vec3& direction) {
   return std::max(0.0F, glm::dot(point.shading_normal, direction));
 }
 
-/// Splitting counts in the weights: n samples of density p_l beside one of density p_b (Veach's multi-sample power heuristic).
-RgbD sky_by_light(const World& world, const trace::SurfacePoint& point, std::uint32_t splits, const Vec2& u) {
-  const std::optional<light::DirectionSample> sample = world.environment_sampler.sample(u);
-  if (!sample || is_black(sample->radiance)) return RgbD(0.0);
-  const double cosine = received_cosine(point, sample->direction);
-  if (!(cosine > 0.0)) return RgbD(0.0);
-  if (!is_visible(world, point, sample->direction, std::numeric_limits<float>::infinity())) return RgbD(0.0);
-  const double weight = power_heuristic(splits * sample->pdf, cosine * kInvPi);
-  return RgbD(sample->radiance) * (weight * cosine / sample->pdf);
+/// Samples of the lights and directions followed at the first vertex: its light is most of the noise of an image, and the
+/// camera ray is paid already. Powers of two.
+constexpr std::uint32_t kLightSplits = 2;
+constexpr std::uint32_t kDirectionSplits = 2;
+/// Vertices whose samples are points of one sequence over the whole pixel; deeper ones are so rarely alike from path to path
+/// that independent numbers serve as well (measured: bench/point_sets_bench).
+constexpr int kStratifiedVertices = 3;
+
+/// Where a vertex takes its random numbers from.
+struct VertexDraws {
+  Sampler::Pair light;
+  Sampler::Pair emitter;
+  Sampler::Pair direction;
+};
+using PathDraws = std::array<VertexDraws, kStratifiedVertices>;
+
+PathDraws make_draws(Sampler& sampler) {
+  PathDraws draws;
+  for (VertexDraws& vertex : draws) vertex = {sampler.next_pair(), sampler.next_pair(), sampler.next_pair()};
+  return draws;
 }
 
-RgbD emitters_by_light(const World& world, const trace::SurfacePoint& point, float pick, const Vec2& u) {
+/// Sample `split` of `splits` of one vertex; `draws` is null for vertices beyond the stratified ones.
+struct Draw {
+  const VertexDraws* draws = nullptr;
+  std::uint32_t split = 0;
+  std::uint32_t splits = 1;
+
+  [[nodiscard]] Vec2 light(Sampler& sampler) const {
+    return draws != nullptr ? sampler.point(draws->light, split, splits) : sampler.independent_2d();
+  }
+  [[nodiscard]] Vec2 emitter(Sampler& sampler) const {
+    return draws != nullptr ? sampler.point(draws->emitter, split, splits) : sampler.independent_2d();
+  }
+  [[nodiscard]] Vec2 direction(Sampler& sampler) const {
+    return draws != nullptr ? sampler.point(draws->direction, split, splits) : sampler.independent_2d();
+  }
+};
+
+/// Irradiance from the sky and its suns, drawn nearly in proportion to radiance times cosine: a direction followed by chance
+/// has nothing to add to that estimate.
+RgbD sky_by_light(const World& world, const trace::SurfacePoint& point, std::uint32_t count,
+                  const Draw& first, Sampler& sampler) {
+  std::array<Vec2, kLightSplits> points;
+  std::array<light::DirectionSample, kLightSplits> samples;
+  Draw draw = first;
+  for (std::uint32_t s = 0; s < count; ++s, ++draw.split) points[s] = draw.light(sampler);
+  world.environment_sampler.sample(world.environment_sampler.lobe(point.shading_normal),
+                                   std::span(points).first(count), std::span(samples).first(count));
+  RgbD sum(0.0);
+  for (std::uint32_t s = 0; s < count; ++s) {
+    const light::DirectionSample& sample = samples[s];
+    if (!(sample.pdf > 0.0) || is_black(sample.radiance)) continue;
+    const double cosine = received_cosine(point, sample.direction);
+    if (!(cosine > 0.0)) continue;
+    if (!is_visible(world, point, sample.direction, std::numeric_limits<float>::infinity())) continue;
+    sum += RgbD(sample.radiance) * (cosine / sample.pdf);
+  }
+  return sum;
+}
+
+/// How many samples of one vertex draw from the lights, and how many follow a direction: both count in the weights
+/// (Veach's multi-sample power heuristic).
+struct Counts {
+  std::uint32_t light = 1;
+  std::uint32_t direction = 1;
+};
+
+RgbD emitters_by_light(const World& world, const trace::SurfacePoint& point, const Counts& counts, float pick,
+                       const Vec2& u) {
   const std::optional<EmitterSample> sample = world.emitters.sample(point.position, pick, u);
   if (!sample) return RgbD(0.0);
   const double cosine = received_cosine(point, sample->direction);
   if (!(cosine > 0.0)) return RgbD(0.0);
   if (!is_mutually_visible(world, point, sample->on_emitter)) return RgbD(0.0);
-  const double weight = power_heuristic(sample->pdf, cosine * kInvPi);
+  const double weight = power_heuristic(counts.light * sample->pdf, counts.direction * cosine * kInvPi);
   return RgbD(sample->radiance) * (weight * cosine / sample->pdf);
 }
 
@@ -66,43 +126,36 @@ RgbD punctual_by_light(const World& world, const trace::SurfacePoint& point, flo
   return RgbD(sample.irradiance) * (cosine * total / weight);
 }
 
-/// Light samples of the sky at the first vertex: they are most of the noise of a scene under an HDR sky, and cost one shadow ray each.
-constexpr std::uint32_t kSkySplits = 4;
-
-RgbD sky_by_light(const World& world, const trace::SurfacePoint& point, std::uint32_t splits,
-                  Sampler& sampler) {
-  const Sampler::Pair pair = sampler.next_pair();
+/// Irradiance straight from the lights, drawn from the lights: samples `first` … `first` + counts.light - 1 of `splits`.
+RgbD direct_by_light(const World& world, const trace::SurfacePoint& point, const Counts& counts,
+                     const Draw& first, Sampler& sampler) {
+  const bool has_sky = world.is_sky_sampled && !world.is_sky_black;
+  const bool has_emitters = !world.emitters.is_empty();
   RgbD sum(0.0);
-  for (std::uint32_t s = 0; s < splits; ++s)
-    sum += sky_by_light(world, point, splits, sampler.point(pair, s, splits));
-  return sum / static_cast<double>(splits);
-}
-
-/// Irradiance straight from the lights, drawn from the lights; `splits` samples of the sky.
-RgbD direct_by_light(const World& world, const trace::SurfacePoint& point, std::uint32_t splits,
-                     Sampler& sampler) {
-  RgbD sum(0.0);
-  if (world.is_sky_sampled && !world.is_sky_black) sum += sky_by_light(world, point, splits, sampler);
-  if (!world.emitters.is_empty()) {
-    const float pick = sampler.next_1d();
-    sum += emitters_by_light(world, point, pick, sampler.next_2d());
+  if (has_sky) sum += sky_by_light(world, point, counts.light, first, sampler);
+  if (has_emitters) {
+    for (Draw draw = first; draw.split < first.split + counts.light; ++draw.split) {
+      const float pick = draw.light(sampler).x;
+      sum += emitters_by_light(world, point, counts, pick, draw.emitter(sampler));
+    }
   }
-  if (!world.scene.lights.empty()) sum += punctual_by_light(world, point, sampler.next_1d());
+  sum /= static_cast<double>(counts.light);
+  if (!world.scene.lights.empty()) sum += punctual_by_light(world, point, first.emitter(sampler).y);
   return sum;
 }
 
-/// The environment seen along a cosine-distributed direction of density `pdf`: irradiance estimate pi L,
-/// weighted.
-RgbD sky_by_direction(const World& world, const Vec3& direction, std::uint32_t splits, double pdf) {
-  if (world.is_sky_black) return RgbD(0.0);
-  const double weight =
-      world.is_sky_sampled ? power_heuristic(pdf, splits * world.environment_sampler.pdf(direction)) : 1.0;
-  return RgbD(light::radiance(world.environment, direction)) * (kPi * weight);
+/// A constant sky seen along a cosine-distributed direction: irradiance estimate pi L.
+RgbD sky_by_direction(const World& world, const Vec3& direction) {
+  if (world.is_sky_black || world.is_sky_sampled) return RgbD(0.0);
+  return RgbD(light::radiance(world.environment, direction)) * kPi;
 }
 
-RgbD emitter_by_direction(const World& world, const Meeting& meeting, const Vec3& direction, double pdf) {
+RgbD emitter_by_direction(const World& world, const Meeting& meeting, const Counts& counts,
+                          const Vec3& direction, double pdf) {
   if (is_black(meeting.emission)) return RgbD(0.0);
-  return RgbD(meeting.emission) * (kPi * power_heuristic(pdf, emitter_pdf(world, meeting, direction)));
+  return RgbD(meeting.emission) *
+         (kPi *
+          power_heuristic(counts.direction * pdf, counts.light * emitter_pdf(world, meeting, direction)));
 }
 
 /// Probability to go on. The first bounce always does: it carries most of the indirect light, and ending it
@@ -124,49 +177,72 @@ void add(BounceTerms& terms, int bounce, const RgbD& value) {
   terms[slot] += value;
 }
 
+/// What one path carries from vertex to vertex.
+struct Walk {
+  trace::SurfacePoint point;
+  Rgb throughput{1.0F};
+  int bounce = 0;
+  Counts counts;
+  Draw draw;
+};
+
+/// Follows one direction from the walk's vertex to the next. False where the path ends.
+bool step(const World& world, int max_bounces, double share, Sampler& sampler, BounceTerms& terms,
+          Walk& walk) {
+  // 1. A direction in proportion to the cosine; below the surface nothing arrives.
+  const Vec3 direction = sample_cosine_hemisphere(walk.point.shading_normal, walk.draw.direction(sampler));
+  const double cosine = received_cosine(walk.point, direction);
+  if (!(cosine > 0.0)) return false;
+  const trace::Ray ray{trace::ray_origin(walk.point, direction), direction};
+  const RgbD weight = RgbD(walk.throughput) * share;
+
+  // 2. On the last bounce only an emitter could still matter. Without any, whether the sky is seen is enough; and a sky that is
+  // sampled as a light has been counted.
+  const bool is_last = walk.bounce == max_bounces;
+  if (is_last && world.emitters.is_empty()) {
+    if (!world.is_sky_sampled && !world.is_sky_black && !world.caster.is_occluded(ray))
+      add(terms, walk.bounce, weight * sky_by_direction(world, direction));
+    return false;
+  }
+
+  // 3. Light met by that direction.
+  const std::optional<Meeting> meeting = meet(world, ray);
+  if (!meeting) {
+    add(terms, walk.bounce, weight * sky_by_direction(world, direction));
+    return false;
+  }
+  add(terms, walk.bounce,
+      weight * emitter_by_direction(world, *meeting, walk.counts, direction, cosine * kInvPi));
+  if (is_last) return false;
+
+  // 4. On to the next vertex: (albedo / pi) E cos / pdf = albedo E, then Russian roulette.
+  walk.throughput *= meeting->albedo;
+  const float probability = survival(walk.throughput, walk.bounce);
+  if (!(sampler.independent_1d() < probability)) return false;
+  walk.throughput /= probability;
+  walk.point = meeting->point;
+  return true;
+}
+
 }  // namespace
 
 void add_irradiance(const World& world, const trace::SurfacePoint& start, int max_bounces, Sampler& sampler,
                     BounceTerms& terms) {
-  trace::SurfacePoint point = start;
-  Rgb throughput(1.0F);
-  for (int bounce = 0;; ++bounce) {
-    // 1. Light drawn from the lights.
-    const std::uint32_t splits = bounce == 0 ? kSkySplits : 1;
-    add(terms, bounce, RgbD(throughput) * direct_by_light(world, point, splits, sampler));
-
-    // 2. A direction in proportion to the cosine; below the surface nothing arrives.
-    const Vec3 direction = sample_cosine_hemisphere(point.shading_normal, sampler.next_2d());
-    const double cosine = received_cosine(point, direction);
-    if (!(cosine > 0.0)) return;
-    const double pdf = cosine * kInvPi;
-    const trace::Ray ray{trace::ray_origin(point, direction), direction};
-
-    // 3. On the last bounce only an emitter could still matter: without any, whether the sky is seen is
-    // enough.
-    const bool is_last = bounce == max_bounces;
-    if (is_last && !world.is_any_emissive) {
-      if (!world.is_sky_black && !world.caster.is_occluded(ray)) {
-        add(terms, bounce, RgbD(throughput) * sky_by_direction(world, direction, splits, pdf));
-      }
-      return;
+  const PathDraws draws = make_draws(sampler);
+  const Counts counts{kLightSplits, kDirectionSplits};
+  add(terms, 0, direct_by_light(world, start, counts, {&draws[0], 0, counts.light}, sampler));
+  const double share = 1.0 / counts.direction;
+  for (std::uint32_t s = 0; s < counts.direction; ++s) {
+    Walk walk{start, Rgb(1.0F), 0, counts, {&draws[0], s, counts.direction}};
+    while (step(world, max_bounces, share, sampler, terms, walk)) {
+      ++walk.bounce;
+      const auto depth = static_cast<std::size_t>(walk.bounce);
+      walk.draw.draws = depth < draws.size() ? &draws[depth] : nullptr;
+      walk.counts = {1, 1};
+      add(terms, walk.bounce,
+          RgbD(walk.throughput) * share *
+              direct_by_light(world, walk.point, walk.counts, walk.draw, sampler));
     }
-    const std::optional<Meeting> meeting = meet(world, ray);
-
-    // 4. Light met by that direction.
-    if (!meeting) {
-      add(terms, bounce, RgbD(throughput) * sky_by_direction(world, direction, splits, pdf));
-      return;
-    }
-    add(terms, bounce, RgbD(throughput) * emitter_by_direction(world, *meeting, direction, pdf));
-    if (is_last) return;
-
-    // 5. On to the next vertex: (albedo / pi) E cos / pdf = albedo E, then Russian roulette.
-    throughput *= meeting->albedo;
-    const float probability = survival(throughput, bounce);
-    if (!(sampler.next_1d() < probability)) return;
-    throughput /= probability;
-    point = meeting->point;
   }
 }
 

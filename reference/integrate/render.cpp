@@ -117,13 +117,14 @@ void render_pixel(const World& world, const scene::Camera& camera, const RenderS
                   int samples, int x, int y, BounceTerms& terms, Film& film) {
   const std::size_t pixel =
       static_cast<std::size_t>(y) * static_cast<std::size_t>(film.width) + static_cast<std::size_t>(x);
-  RandomisedMean mean(samples);
+  const scene::ImagePlane plane = scene::image_plane(camera, film.width, film.height);
+  RandomisedMean mean(samples, settings.randomisations);
   for (int s = 0; s < samples; ++s) {
-    const SamplePlace place = sample_place(round, samples, s);
+    const SamplePlace place = sample_place(round, samples, s, settings.randomisations);
     Sampler sampler(settings.seed, pixel, place.randomisation, place.index);
     const Vec2 jitter = sampler.next_2d();
-    const Vec3 direction = scene::ray_direction(camera, static_cast<float>(x) + jitter.x,
-                                                static_cast<float>(y) + jitter.y, film.width, film.height);
+    const Vec3 direction =
+        scene::ray_direction(plane, static_cast<float>(x) + jitter.x, static_cast<float>(y) + jitter.y);
     CameraSample seen = sample_radiance(world, {camera.eye, direction}, settings.max_bounces, sampler, terms);
     if (!seen.is_hit && !settings.is_background_visible) seen.emission = Rgb(0.0F);
     RgbD sum(seen.emission);
@@ -160,6 +161,10 @@ void require_valid(const RenderSettings& s) {
     throw InputError(fmt::format("samples per pixel: expected at least 1, got {}", s.samples_per_pixel));
   if (s.layers.halves && s.samples_per_pixel < 2 && !s.target_error && !s.max_seconds)
     throw InputError("halves: expected at least 2 samples per pixel, got 1");
+  if (s.randomisations < kLeastRandomisations || s.randomisations > kMostRandomisations) {
+    throw InputError(fmt::format("randomisations: expected {} to {}, got {}", kLeastRandomisations,
+                                 kMostRandomisations, s.randomisations));
+  }
   if (s.max_bounces < 0) throw InputError(fmt::format("bounces: expected 0 or more, got {}", s.max_bounces));
   if (s.target_error && !(*s.target_error > 0.0))
     throw InputError(fmt::format("target error: expected > 0, got {}", *s.target_error));

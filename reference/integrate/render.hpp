@@ -7,6 +7,7 @@
 #include <string>
 
 #include "reference/image/image.hpp"
+#include "reference/integrate/film.hpp"
 #include "reference/integrate/path.hpp"
 #include "reference/integrate/world.hpp"
 #include "reference/scene/camera.hpp"
@@ -43,6 +44,7 @@ struct RenderSettings {
       target_error;  // relative: root of the mean squared standard error over the mean radiance
   std::optional<double> max_seconds;
   int max_bounces = kAllBounces;
+  int randomisations = kRandomisations;  // independent sequences a pixel and round, 2 … 32: film.hpp
   std::uint64_t seed = 0;
   int threads = 0;  // 0 = all there are; never changes the result
   Shard shard;

@@ -75,4 +75,14 @@ float Sampler::next_1d() {
   return next_2d().x;
 }
 
+Vec2 Sampler::independent_2d() {
+  const std::uint64_t bits =
+      mix(mix(key_ + 0x9E3779B97F4A7C15ULL * ++dimension_) + 0xD1342543DE82EF95ULL * index_);
+  return {to_unit(static_cast<std::uint32_t>(bits)), to_unit(static_cast<std::uint32_t>(bits >> 32U))};
+}
+
+float Sampler::independent_1d() {
+  return independent_2d().x;
+}
+
 }  // namespace plumbline::integrate

@@ -19,9 +19,14 @@ class Sampler {
  public:
   Sampler(std::uint64_t seed, std::uint64_t stream, std::uint32_t randomisation, std::uint32_t index);
 
-  /// In [0, 1)^2.
+  /// The next pair of dimensions, in [0, 1)^2.
   [[nodiscard]] Vec2 next_2d();
   [[nodiscard]] float next_1d();
+
+  /// Numbers without any relation to those of other samples: cheaper, for decisions and for dimensions so deep in a path
+  /// that a better distribution no longer shows.
+  [[nodiscard]] Vec2 independent_2d();
+  [[nodiscard]] float independent_1d();
 
   /// One pair of dimensions from which a sample draws several points (splitting).
   struct Pair {

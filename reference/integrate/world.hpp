@@ -6,6 +6,7 @@
 #include "reference/light/environment_sampler.hpp"
 #include "reference/scene/scene.hpp"
 #include "reference/trace/ray_caster.hpp"
+#include "reference/trace/surface_table.hpp"
 
 namespace plumbline::integrate {
 
@@ -19,13 +20,12 @@ class World {
   const scene::Scene scene;
   const light::Environment environment;
   const trace::RayCaster caster;
+  const trace::SurfaceTable surfaces;
   const EmitterTable emitters;
   const light::EnvironmentSampler environment_sampler;
   /// A constant sky without suns is sampled best by the cosine alone: zero variance where nothing blocks.
   const bool is_sky_sampled;
   const bool is_sky_black;
-  /// Whether any surface shines, drawn by `emitters` or only met.
-  const bool is_any_emissive;
 };
 
 }  // namespace plumbline::integrate

@@ -108,10 +108,16 @@ glm::dmat3 rotation_about(int axis, double degrees) {
 
 }  // namespace
 
-Rgb radiance(const Environment& environment, const Vec3& direction) {
+Rgb sky_radiance(const Environment& environment, const Vec3& direction) {
   const Vec3 local = to_environment_frame(environment, direction);
-  Rgb total = std::visit([&](const auto& sky) { return sky_radiance(sky, local, environment.lookup); },
-                         environment.sky);
+  return std::visit([&](const auto& sky) { return sky_radiance(sky, local, environment.lookup); },
+                    environment.sky);
+}
+
+Rgb radiance(const Environment& environment, const Vec3& direction) {
+  Rgb total = sky_radiance(environment, direction);
+  if (environment.suns.empty()) return total;
+  const Vec3 local = to_environment_frame(environment, direction);
   for (const SunDisc& sun : environment.suns) {
     if (contains(sun, local)) total += sun.radiance;
   }

@@ -68,6 +68,9 @@ struct Environment {
 /// use it. Images are looked up as environment.lookup says.
 [[nodiscard]] Rgb radiance(const Environment& environment, const Vec3& direction);
 
+/// The same without the suns.
+[[nodiscard]] Rgb sky_radiance(const Environment& environment, const Vec3& direction);
+
 /// True when no direction has any radiance for certain (constant black and no suns, or black ones).
 [[nodiscard]] bool is_black(const Environment& environment);
 

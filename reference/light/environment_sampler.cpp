@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -79,11 +80,46 @@ Vec3d around(const Vec3d& axis, double chord, double turns) {
   return (1.0 - 0.5 * chord * chord) * axis + sine * (std::cos(phi) * across + std::sin(phi) * along);
 }
 
+// How far the middle of a cell may be from its corners: the diagonal of the largest cell, on the equator of a lat-long grid
+// and in the middle of a cube's face.
+double cell_radius(const LatLongDensity& density) {
+  return kPi * std::hypot(0.5 / density.table().rows(), 1.0 / density.table().columns());
+}
+double cell_radius(const BilinearLatLongDensity& density) {
+  return kPi * std::hypot(0.5 / (density.table().rows() - 1), 1.0 / density.table().columns());
+}
+double cell_radius(const CubeDensity& density) {
+  return std::sqrt(2.0) / density.table().columns();
+}
+
+// Radiance of a cell that a direction was drawn in. Of images looked up by nearest texel the cell is the texel: its own
+// radiance, even where rounding has carried the direction over the border.
+Rgb cell_radiance(const Environment& environment, const TexelTable::Pick& cell, const Vec3& direction) {
+  if (environment.lookup == Lookup::nearest) {
+    if (const auto* sky = std::get_if<LatLongSky>(&environment.sky))
+      return sky->image.at(cell.column, cell.row);
+    if (const auto* sky = std::get_if<CubeMapSky>(&environment.sky)) {
+      const int side = sky->faces[0].width;
+      return sky->faces.at(static_cast<std::size_t>(cell.row / side)).at(cell.column, cell.row % side);
+    }
+  }
+  return sky_radiance(environment, direction);
+}
+
+void prefetch_cell(const Environment& environment, const TexelTable::Pick& cell) {
+  const auto* sky = std::get_if<LatLongSky>(&environment.sky);
+  if (sky != nullptr && environment.lookup == Lookup::nearest)
+    __builtin_prefetch(&sky->image.at(cell.column, cell.row));
+}
+
 }  // namespace
 
-EnvironmentSampler::EnvironmentSampler(const Environment& environment) : environment_(&environment) {
+EnvironmentSampler::EnvironmentSampler(const Environment& environment)
+    : environment_(&environment), to_world_(environment.rotation) {
   SkyPart sky = make_sky_density(environment.sky, environment.lookup, environment.name);
   sky_ = std::move(sky.density);
+  sky_power_ = sky.power;
+  add_blocks();
   add_cones();
   double cone_power = 0.0;
   for (const Cone& cone : cones_) cone_power += cone.probability;
@@ -96,7 +132,7 @@ void EnvironmentSampler::add_cones() {
     require_usable(sun, environment_->name);
     const double omega = solid_angle(sun);
     const double power = static_cast<double>(max_magnitude(sun.radiance)) * omega;
-    if (power > 0.0) cones_.push_back({&sun, power, 1.0 / omega});
+    if (power > 0.0) cones_.push_back({&sun, power, 1.0 / omega, power});
   }
 }
 
@@ -113,7 +149,7 @@ void EnvironmentSampler::share(double sky_power, double cone_power) {
 }
 
 Vec3 EnvironmentSampler::to_world(const Vec3d& local_direction) const {
-  return Vec3(glm::normalize(glm::dmat3(environment_->rotation) * local_direction));
+  return Vec3(to_world_ * local_direction);
 }
 
 // Uniform in solid angle: 1 - cos a, and so the square of the chord, is uniform. A direction that rounding
@@ -137,8 +173,8 @@ std::optional<DirectionSample> EnvironmentSampler::sample_towards(const Vec3& di
 // the direction may leave its texel. That is harmless unless it meets a black one; then the texel's centre is
 // given.
 std::optional<DirectionSample> EnvironmentSampler::sample_sky(double x, double y) const {
-  const auto result = sample_towards(to_world(sample_of(sky_, x, y)));
-  return result ? result : sample_towards(to_world(centre_of(sky_, x, y)));
+  const auto result = sample_towards(to_world(glm::normalize(sample_of(sky_, x, y))));
+  return result ? result : sample_towards(to_world(glm::normalize(centre_of(sky_, x, y))));
 }
 
 std::optional<DirectionSample> EnvironmentSampler::sample_cones(double x, double y) const {
@@ -148,6 +184,130 @@ std::optional<DirectionSample> EnvironmentSampler::sample_cones(double x, double
     ++chosen;
   }
   return sample_towards(inside_cone(cones_[chosen], x / cones_[chosen].probability, y));
+}
+
+void EnvironmentSampler::add_blocks() {
+  std::visit(
+      [&](const auto& density) {
+        if constexpr (requires { density.table(); }) {
+          const auto centre = [&](int row, int column) {
+            return glm::normalize(density.place({row, column, 0.5, 0.5}).direction);
+          };
+          blocks_ = SkyBlocks(density.table(), centre, cell_radius(density));
+        }
+      },
+      sky_);
+}
+
+// Power times the mean clamped cosine of the cone's axis, smoothed over its half angle as the nodes of SkyBlocks are.
+double EnvironmentSampler::cone_weight(const Cone& cone, const Vec3d& local_normal) const {
+  const double half_angle = cone.sun->half_angle_rad;
+  const double reach = half_angle < 0.5 * kPi ? std::sin(half_angle) : 1.0;
+  const double cosine = glm::dot(local_normal, Vec3d(cone.sun->direction));
+  if (cosine < -reach - kUnitTolerance && half_angle < 0.5 * kPi) return 0.0;
+  const double cut = (cosine + reach) * (cosine + reach) / (4.0 * reach);
+  return cone.power * std::max(cosine >= reach ? cosine : cut, 0.05);
+}
+
+EnvironmentSampler::Lobe EnvironmentSampler::lobe(const Vec3& normal) const {
+  Lobe result;
+  result.normal = normal;
+  const Vec3 local = to_environment_frame(*environment_, normal);
+  double sky_total = 0.0;
+  if (std::holds_alternative<UniformDensity>(sky_)) {
+    sky_total = 0.25 * sky_power_;  // the cosine's mean over the sphere
+  } else if (!std::holds_alternative<NoDensity>(sky_)) {
+    result.sky = blocks_.lobe(local);
+    sky_total = static_cast<double>(result.sky.total) * sky_power_;
+  }
+  for (const Cone& cone : cones_) result.cone_total += cone_weight(cone, Vec3d(local));
+  if (!(sky_total > 0.0 && result.cone_total > 0.0)) {
+    result.sky_probability = sky_total > 0.0 ? 1.0 : 0.0;
+  } else {
+    result.sky_probability =
+        std::clamp(sky_total / (sky_total + result.cone_total), kLeastShare, 1.0 - kLeastShare);
+  }
+  return result;
+}
+
+// The sky's samples go through the stages side by side; those of a sun are left alone (x < 0).
+template <class Density>
+void EnvironmentSampler::sample_sky(const Density& density, const Lobe& lobe,
+                                    std::span<const glm::dvec2> numbers,
+                                    std::span<DirectionSample> samples) const {
+  if constexpr (requires { density.table(); }) {
+    std::array<SkyBlocks::Pick, kMostTogether> picks;
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      picks[i] =
+          numbers[i].x < 0.0 ? SkyBlocks::Pick{} : blocks_.pick_block(lobe.sky, numbers[i].x, numbers[i].y);
+    for (std::size_t i = 0; i < numbers.size(); ++i) blocks_.pick_row(density.table(), picks[i]);
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      blocks_.pick_column(density.table(), picks[i]);
+      prefetch_cell(*environment_, picks[i].cell);
+    }
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      if (!(picks[i].probability > 0.0)) continue;
+      const PlacedDirection placed = density.place(picks[i].cell);
+      const Vec3 direction = to_world(placed.direction);
+      samples[i] = {direction, lobe.sky_probability * picks[i].probability * placed.density,
+                    cell_radiance(*environment_, picks[i].cell, direction)};
+    }
+  } else {
+    // The same from everywhere: by the cosine alone (cos^2 uniform).
+    const Vec3d local_normal(to_environment_frame(*environment_, lobe.normal));
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      const double cosine = std::sqrt(1.0 - std::max(numbers[i].x, 0.0));
+      if (numbers[i].x < 0.0 || !(cosine > 0.0)) continue;
+      const Vec3 direction = to_world(around(local_normal, std::sqrt(2.0 - 2.0 * cosine), numbers[i].y));
+      samples[i] = {direction, lobe.sky_probability * cosine / kPi, sky_radiance(*environment_, direction)};
+    }
+  }
+}
+
+DirectionSample EnvironmentSampler::sample_cones(const Lobe& lobe, double x, double y) const {
+  const Vec3d local_normal(to_environment_frame(*environment_, lobe.normal));
+  double target = x * lobe.cone_total;
+  for (std::size_t k = 0; k < cones_.size(); ++k) {
+    const double weight = cone_weight(cones_[k], local_normal);
+    if (!(weight > 0.0)) continue;
+    if (target >= weight && k + 1 < cones_.size()) {
+      target -= weight;
+      continue;
+    }
+    const double probability = (1.0 - lobe.sky_probability) * weight / lobe.cone_total;
+    return {inside_cone(cones_[k], std::min(target / weight, 1.0), y), probability * cones_[k].density,
+            cones_[k].sun->radiance};
+  }
+  return {};
+}
+
+void EnvironmentSampler::sample(const Lobe& lobe, std::span<const Vec2> points,
+                                std::span<DirectionSample> samples) const {
+  std::array<glm::dvec2, kMostTogether> numbers;
+  bool has_sky = false;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    samples[i] = {};
+    glm::dvec2& number = numbers[i] = with_low_bits(points[i]);
+    if (number.x < lobe.sky_probability) {
+      number.x /= lobe.sky_probability;
+      has_sky = true;
+      continue;
+    }
+    if (lobe.cone_total > 0.0) {
+      samples[i] =
+          sample_cones(lobe, (number.x - lobe.sky_probability) / (1.0 - lobe.sky_probability), number.y);
+    }
+    number.x = -1.0;
+  }
+  if (!has_sky) return;
+  const auto drawn = std::span(numbers).first(points.size());
+  std::visit([&](const auto& density) { sample_sky(density, lobe, drawn, samples); }, sky_);
+}
+
+std::optional<DirectionSample> EnvironmentSampler::sample(const Lobe& lobe, Vec2 u) const {
+  DirectionSample result;
+  sample(lobe, std::span(&u, 1), std::span(&result, 1));
+  return result.pdf > 0.0 ? std::optional(result) : std::nullopt;
 }
 
 std::optional<DirectionSample> EnvironmentSampler::sample(Vec2 u) const {

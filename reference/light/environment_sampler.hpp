@@ -2,16 +2,18 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "reference/light/environment.hpp"
+#include "reference/light/sky_blocks.hpp"
 #include "reference/light/sky_density.hpp"
 
 namespace plumbline::light {
 
 struct DirectionSample {
   Vec3 direction{0.0F};  // unit
-  double pdf = 0.0;      // per solid angle [sr^-1], > 0
+  double pdf = 0.0;      // per solid angle [sr^-1]
   Rgb radiance{0.0F};    // from that direction
 };
 
@@ -45,11 +47,30 @@ class EnvironmentSampler {
   [[nodiscard]] double pdf(const Vec3& direction) const;
   [[nodiscard]] bool is_black() const { return is_black_; }
 
+  /// What sampling about one normal needs, made once for all samples of a point.
+  struct Lobe {
+    Vec3 normal{0.0F, 1.0F, 0.0F};
+    SkyBlocks::Lobe sky;
+    double sky_probability = 0.0;
+    double cone_total = 0.0;
+  };
+  [[nodiscard]] Lobe lobe(const Vec3& normal) const;
+  /// A direction above or near the horizon of the lobe's normal, drawn nearly in proportion to radiance times the clamped
+  /// cosine: either of the sky (result's radiance: the sky's alone) or of one sun (the sun's alone), so that radiance / pdf
+  /// estimates the integral over both. The density is positive wherever radiance times cosine is not zero. None when nothing
+  /// is above the horizon, sometimes when little is.
+  [[nodiscard]] std::optional<DirectionSample> sample(const Lobe& lobe, Vec2 u) const;
+  /// One sample for each of up to kMostTogether points; pdf 0 stands for none. Faster than one by one: the samples' memory
+  /// is fetched together.
+  static constexpr std::size_t kMostTogether = 8;
+  void sample(const Lobe& lobe, std::span<const Vec2> points, std::span<DirectionSample> samples) const;
+
  private:
   struct Cone {
     const SunDisc* sun = nullptr;
     double probability = 0.0;  // of being chosen
     double density = 0.0;      // 1 / solid angle
+    double power = 0.0;        // magnitude times solid angle
   };
   void add_cones();
   void share(double sky_power, double cone_power);
@@ -58,10 +79,19 @@ class EnvironmentSampler {
   [[nodiscard]] std::optional<DirectionSample> sample_cones(double x, double y) const;
   [[nodiscard]] Vec3 inside_cone(const Cone& cone, double x, double y) const;
   [[nodiscard]] Vec3 to_world(const Vec3d& local_direction) const;
+  void add_blocks();
+  [[nodiscard]] double cone_weight(const Cone& cone, const Vec3d& local_normal) const;
+  template <class Density>
+  void sample_sky(const Density& density, const Lobe& lobe, std::span<const glm::dvec2> numbers,
+                  std::span<DirectionSample> samples) const;
+  [[nodiscard]] DirectionSample sample_cones(const Lobe& lobe, double x, double y) const;
 
   const Environment* environment_;
+  glm::dmat3 to_world_{1.0};
   bool is_black_ = true;
   SkyDensity sky_;
+  SkyBlocks blocks_;  // of sky_, where it has a table
+  double sky_power_ = 0.0;
   double sky_probability_ = 0.0;
   std::vector<Cone> cones_;
 };

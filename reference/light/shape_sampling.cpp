@@ -28,15 +28,6 @@ Vec3d at_angle(const Vec3d& axis, double one_minus_cos, double azimuth) {
                         sine * std::sin(azimuth) * axes.v);
 }
 
-glm::dvec2 concentric_disc(const Vec2& u) {
-  const glm::dvec2 p = 2.0 * glm::dvec2(u) - 1.0;
-  if (p.x == 0.0 && p.y == 0.0) return glm::dvec2(0.0);
-  const bool is_wide = std::abs(p.x) > std::abs(p.y);
-  const double radius = is_wide ? p.x : p.y;
-  const double angle = is_wide ? kPi / 4.0 * (p.y / p.x) : kPi / 2.0 - kPi / 4.0 * (p.x / p.y);
-  return radius * glm::dvec2(std::cos(angle), std::sin(angle));
-}
-
 // 1 - cos alpha with sin alpha = s: 1 - sqrt(1 - s^2) = s^2/(1 + sqrt(1 - s^2)), where 1 - s^2 = (1 - s)(1 + s) keeps
 // its digits for a receiver that touches the sphere.
 double cone_one_minus_cos(double radius, double distance) {
@@ -78,8 +69,17 @@ Vec3d sample_cap(const Vec3d& axis, double min_cosine, const Vec2& u) {
   return at_angle(axis, static_cast<double>(u.x) * (1.0 - min_cosine), 2.0 * kPi * static_cast<double>(u.y));
 }
 
+glm::dvec2 sample_unit_disc(const Vec2& u) {
+  const glm::dvec2 p = 2.0 * glm::dvec2(u) - 1.0;
+  if (p.x == 0.0 && p.y == 0.0) return glm::dvec2(0.0);
+  const bool is_wide = std::abs(p.x) > std::abs(p.y);
+  const double radius = is_wide ? p.x : p.y;
+  const double angle = is_wide ? kPi / 4.0 * (p.y / p.x) : kPi / 2.0 - kPi / 4.0 * (p.x / p.y);
+  return radius * glm::dvec2(std::cos(angle), std::sin(angle));
+}
+
 Vec3d sample_disc(const Vec3d& normal, double radius, const Vec2& u) {
-  const glm::dvec2 p = radius * concentric_disc(u);
+  const glm::dvec2 p = radius * sample_unit_disc(u);
   const Axes axes = axes_about(normal);
   return p.x * axes.u + p.y * axes.v;
 }

@@ -34,8 +34,12 @@ struct ShapeSample {
 /// sphere; axis unit, min_cosine in [-1, 1), u in [0, 1)^2. Density 1/(2 pi R^2 (1 - min_cosine)) per area.
 [[nodiscard]] Vec3d sample_cap(const Vec3d& axis, double min_cosine, const Vec2& u);
 
+/// A point of the unit disc drawn uniformly by area, by the concentric map, which keeps strata together (Shirley &
+/// Chiu, "A low distortion map between disk and square", 1997).
+[[nodiscard]] glm::dvec2 sample_unit_disc(const Vec2& u);
+
 /// A point of a disc drawn uniformly by area: its offset from the centre; normal unit, u in [0, 1)^2. Density
-/// 1/(pi R^2) per area. By the concentric map, which keeps strata together (Shirley & Chiu, 1997).
+/// 1/(pi R^2) per area.
 [[nodiscard]] Vec3d sample_disc(const Vec3d& normal, double radius, const Vec2& u);
 
 /// Density per area into density per solid angle: p d^2/|cos|, where cos is between the surface's normal and the

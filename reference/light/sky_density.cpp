@@ -264,6 +264,10 @@ LatLongDensity::LatLongDensity(int width, int height, const RowPeaks& row_peaks)
     const double sine = std::sin(0.5 * kPi * row / height);
     row_borders_[static_cast<std::size_t>(row)] = sine * sine;
   }
+  for (int column = 0; column < width; ++column) {
+    const double phi = 2.0 * kPi * ((column + 0.5) / width - 0.5);
+    azimuths_.emplace_back(std::cos(phi), std::sin(phi));
+  }
   table_ = TexelTable(height, width, [&](int row, std::span<double> weights) {
     row_peaks(row, weights);
     const double omega = cell_solid_angle(row);
@@ -278,18 +282,32 @@ double LatLongDensity::cell_solid_angle(int row) const {
 }
 
 Vec3d LatLongDensity::sample(double x, double y) const {
-  const TexelTable::Pick pick = table_.pick(x, y);
-  return inside_cell(pick, inside(pick.x, width_), inside(pick.y, 2 * height_));
+  return place(table_.pick(x, y)).direction;
+}
+
+PlacedDirection LatLongDensity::place(const TexelTable::Pick& pick) const {
+  return {inside_cell(pick, inside(pick.x, width_), inside(pick.y, 2 * height_)),
+          1.0 / cell_solid_angle(pick.row)};
 }
 
 Vec3d LatLongDensity::centre(double x, double y) const {
   return inside_cell(table_.pick(x, y), 0.5, 0.5);
 }
 
+// The azimuth is that of the column's middle turned by a = 2 pi (x - 1/2) / width: for narrow columns (|a| < 0.05) by the
+// series, whose rest is below a^5 / 120 < 3e-9, for others by the library.
 Vec3d LatLongDensity::inside_cell(const TexelTable::Pick& pick, double x, double y) const {
+  constexpr int kNarrow = 64;
   const auto row = static_cast<std::size_t>(pick.row);
   const double versine = row_borders_[row] + (row_borders_[row + 1] - row_borders_[row]) * y;
-  return direction_from((pick.column + x) / width_, versine);
+  if (width_ < kNarrow) return direction_from((pick.column + x) / width_, versine);
+  const double a = 2.0 * kPi * (x - 0.5) / width_;
+  const double cosine = 1.0 - a * a * (0.5 - a * a / 24.0);
+  const double sine = a * (1.0 - a * a / 6.0);
+  const glm::dvec2 middle = azimuths_[static_cast<std::size_t>(pick.column)];
+  const double radius = 2.0 * std::sqrt(versine * (1.0 - versine));
+  return {radius * (cosine * middle.x - sine * middle.y), 1.0 - 2.0 * versine,
+          radius * (sine * middle.x + cosine * middle.y)};
 }
 
 double LatLongDensity::pdf(const Vec3& direction) const {
@@ -361,13 +379,18 @@ double BilinearLatLongDensity::height_in_cell(int row, double fraction) const {
 }
 
 Vec3d BilinearLatLongDensity::sample(double x, double y) const {
-  const TexelTable::Pick pick = table_.pick(x, y);
+  return place(table_.pick(x, y)).direction;
+}
+
+PlacedDirection BilinearLatLongDensity::place(const TexelTable::Pick& pick) const {
   const Corners c = corners(pick.row, pick.column);
   const double height =
       with_linear_density(pick.y, c.upper_left + c.upper_right, c.lower_left + c.lower_right);
   const double left = (1.0 - height) * c.upper_left + height * c.lower_left;
   const double right = (1.0 - height) * c.upper_right + height * c.lower_right;
-  return inside_cell(pick.row, pick.column, with_linear_density(pick.x, left, right), height);
+  const double across = with_linear_density(pick.x, left, right);
+  return {inside_cell(pick.row, pick.column, across, height),
+          c.at(across, height) / (c.mean() * cell_solid_angle(pick.row))};
 }
 
 Vec3d BilinearLatLongDensity::centre(double x, double y) const {
@@ -408,6 +431,14 @@ CubeDensity::CubeDensity(const CubeMapSky& sky) : side_(sky.faces[0].width) {
 Vec3d CubeDensity::sample(double x, double y) const {
   const TexelTable::Pick pick = table_.pick(x, y);
   return inside_texel(pick, inside(pick.x, side_), inside(pick.y, side_));
+}
+
+// (s, t) is at the distance r = |point| of the face's plane from the centre: ds dt = r^3 d omega.
+PlacedDirection CubeDensity::place(const TexelTable::Pick& pick) const {
+  const Vec3d point = inside_texel(pick, inside(pick.x, side_), inside(pick.y, side_));
+  const double r = glm::length(point);
+  const double texel_area = 4.0 / (static_cast<double>(side_) * side_);
+  return {point / r, r * r * r / texel_area};
 }
 
 Vec3d CubeDensity::centre(double x, double y) const {

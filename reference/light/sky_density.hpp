@@ -15,6 +15,12 @@ namespace plumbline::light {
 // Each density has sample(x, y), a direction for two numbers in [0, 1); pdf(direction); and centre(x, y), the
 // middle of the texel that sample(x, y) lies in, for when rounding has carried that over the border.
 
+/// A direction inside a given cell of a density's table, and the density per solid angle with which it is drawn there.
+struct PlacedDirection {
+  Vec3d direction{0.0};
+  double density = 0.0;
+};
+
 /// A black sky.
 class NoDensity {
  public:
@@ -43,6 +49,8 @@ class LatLongDensity {
   [[nodiscard]] double pdf(const Vec3& direction) const;
   /// Sum of peak times solid angle.
   [[nodiscard]] double power() const { return table_.total(); }
+  [[nodiscard]] const TexelTable& table() const { return table_; }
+  [[nodiscard]] PlacedDirection place(const TexelTable::Pick& pick) const;
 
  private:
   [[nodiscard]] double cell_solid_angle(int row) const;
@@ -50,7 +58,8 @@ class LatLongDensity {
 
   int width_ = 0;
   int height_ = 0;
-  std::vector<double> row_borders_;  // height + 1 values of (1 - cos theta) / 2
+  std::vector<double> row_borders_;   // height + 1 values of (1 - cos theta) / 2
+  std::vector<glm::dvec2> azimuths_;  // (cos, sin) of the azimuth in the middle of each column
   TexelTable table_;
 };
 
@@ -67,6 +76,8 @@ class BilinearLatLongDensity {
   [[nodiscard]] Vec3d centre(double x, double y) const;
   [[nodiscard]] double pdf(const Vec3& direction) const;
   [[nodiscard]] double power() const { return table_.total(); }
+  [[nodiscard]] const TexelTable& table() const { return table_; }
+  [[nodiscard]] PlacedDirection place(const TexelTable::Pick& pick) const;
 
  private:
   struct Corners {
@@ -98,6 +109,8 @@ class CubeDensity {
   [[nodiscard]] Vec3d centre(double x, double y) const;
   [[nodiscard]] double pdf(const Vec3& direction) const;
   [[nodiscard]] double power() const { return table_.total(); }
+  [[nodiscard]] const TexelTable& table() const { return table_; }
+  [[nodiscard]] PlacedDirection place(const TexelTable::Pick& pick) const;
 
  private:
   [[nodiscard]] Vec3d inside_texel(const TexelTable::Pick& pick, double x, double y) const;

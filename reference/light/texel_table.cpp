@@ -11,26 +11,6 @@ namespace {
 // The unit interval is cut into kUnits equal parts; entry i owns [bounds[i], bounds[i + 1]).
 constexpr std::uint32_t kUnits = 0xFFFFFFFFU;
 
-// One unit for every positive weight, the rest in proportion. Returns the sum of the weights.
-double fill_bounds(std::span<const double> weights, std::span<std::uint32_t> bounds) {
-  double total = 0.0;
-  std::uint32_t positive = 0;
-  for (const double weight : weights) {
-    total += weight;
-    positive += weight > 0.0 ? 1U : 0U;
-  }
-  const double shared = static_cast<double>(kUnits - positive);
-  double running = 0.0;  // the same additions as total's: ends on it exactly
-  std::uint32_t given = 0;
-  bounds[0] = 0;
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    running += weights[i];
-    given += weights[i] > 0.0 ? 1U : 0U;
-    bounds[i + 1] = total > 0.0 ? given + static_cast<std::uint32_t>(running / total * shared) : 0U;
-  }
-  return total;
-}
-
 // A guide of 2^k intervals, about one for four entries: guide[j] is the entry that owns the first unit of
 // interval j, so that a unit of interval j belongs to one of guide[j] … guide[j + 1].
 std::size_t guide_size(int entries) {
@@ -76,7 +56,27 @@ double probability_of(std::span<const std::uint32_t> bounds, int entry) {
 
 }  // namespace
 
-TexelTable::TexelTable(int rows, int columns, const RowWeights& row_weights) : columns_(columns) {
+double fill_bounds(std::span<const double> weights, std::span<std::uint32_t> bounds) {
+  double total = 0.0;
+  std::uint32_t positive = 0;
+  for (const double weight : weights) {
+    total += weight;
+    positive += weight > 0.0 ? 1U : 0U;
+  }
+  const double shared = static_cast<double>(kUnits - positive);
+  double running = 0.0;  // the same additions as total's: ends on it exactly
+  std::uint32_t given = 0;
+  bounds[0] = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    running += weights[i];
+    given += weights[i] > 0.0 ? 1U : 0U;
+    bounds[i + 1] = total > 0.0 ? given + static_cast<std::uint32_t>(running / total * shared) : 0U;
+  }
+  return total;
+}
+
+TexelTable::TexelTable(int rows, int columns, const RowWeights& row_weights)
+    : rows_(rows), columns_(columns) {
   const auto row_count = static_cast<std::size_t>(rows);
   const std::size_t bound_count = static_cast<std::size_t>(columns) + 1;
   const std::size_t guide_count = guide_size(columns) + 1;
@@ -110,8 +110,12 @@ TexelTable::Pick TexelTable::pick(double x, double y) const {
   return {row.entry, column.entry, column.rest, row.rest};
 }
 
+double TexelTable::row_probability(int row) const {
+  return probability_of(row_bounds_, row);
+}
+
 double TexelTable::probability(int row, int column) const {
-  return probability_of(row_bounds_, row) * probability_of(column_bounds(row), column);
+  return row_probability(row) * probability_of(column_bounds(row), column);
 }
 
 }  // namespace plumbline::light

@@ -8,6 +8,10 @@
 
 namespace plumbline::light {
 
+/// 2^32 - 1 units dealt to entries in proportion to their weights, at least one to every positive weight: entry i owns
+/// [bounds[i], bounds[i + 1]). Returns the sum of the weights; all bounds are 0 when it is.
+double fill_bounds(std::span<const double> weights, std::span<std::uint32_t> bounds);
+
 /// A discrete distribution over rows x columns: first a row by its sum, then a column within it.
 /// Probabilities are integers over 2^32 - 1, at least 1 for every positive weight, so that probability() is
 /// exactly how often pick() gives a texel, and no texel that has a weight is ever out of reach. 4 to 6 bytes
@@ -23,6 +27,8 @@ class TexelTable {
 
   /// Sum of all weights; 0 when there is nothing to pick.
   [[nodiscard]] double total() const { return total_; }
+  [[nodiscard]] int rows() const { return rows_; }
+  [[nodiscard]] int columns() const { return columns_; }
 
   struct Pick {
     int row = 0;
@@ -35,10 +41,12 @@ class TexelTable {
 
   /// Probability with which pick() gives this texel.
   [[nodiscard]] double probability(int row, int column) const;
-
- private:
+  /// The parts of it: of a row, and the columns + 1 bounds between the columns of a row.
+  [[nodiscard]] double row_probability(int row) const;
   [[nodiscard]] std::span<const std::uint32_t> column_bounds(int row) const;
 
+ private:
+  int rows_ = 0;
   int columns_ = 0;
   double total_ = 0.0;
   std::vector<std::uint32_t> row_bounds_;     // rows + 1, from 0 to 2^32 - 1

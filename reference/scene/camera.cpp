@@ -28,15 +28,18 @@ Camera look_at(Vec3 eye, Vec3 target, Vec3 up, float vertical_fov_deg, std::stri
   return {std::move(name), eye, Vec3(forward), Vec3(true_up), fov_rad};
 }
 
-Vec3 ray_direction(const Camera& camera, float x, float y, int width, int height) {
+ImagePlane image_plane(const Camera& camera, int width, int height) {
   const double half_height = std::tan(0.5 * static_cast<double>(camera.vertical_fov_rad));
-  const double pixel = 2.0 * half_height / static_cast<double>(height);  // square pixels at unit distance
+  const double pixel = 2.0 * half_height / static_cast<double>(height);
   const Vec3d forward(camera.forward);
   const Vec3d up(camera.up);
-  const Vec3d right = glm::cross(forward, up);
-  const double column = (static_cast<double>(x) - 0.5 * static_cast<double>(width)) * pixel;
-  const double row = (0.5 * static_cast<double>(height) - static_cast<double>(y)) * pixel;
-  return Vec3(glm::normalize(forward + column * right + row * up));
+  const Vec3d right = pixel * glm::cross(forward, up);
+  const Vec3d down = -pixel * up;
+  return {forward - 0.5 * width * right - 0.5 * height * down, right, down};
+}
+
+Vec3 ray_direction(const Camera& camera, float x, float y, int width, int height) {
+  return ray_direction(image_plane(camera, width, height), x, y);
 }
 
 }  // namespace plumbline::scene

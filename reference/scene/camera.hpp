@@ -21,6 +21,20 @@ struct Camera {
 [[nodiscard]] Camera look_at(Vec3 eye, Vec3 target, Vec3 up, float vertical_fov_deg,
                              std::string name = "camera");
 
+/// A width x height image with square pixels at unit distance before the eye; the vertical field of view spans the height.
+struct ImagePlane {
+  Vec3d corner{0.0};  // from the eye to the top left corner of the top left pixel
+  Vec3d right{0.0};   // one pixel
+  Vec3d down{0.0};    // one pixel
+};
+[[nodiscard]] ImagePlane image_plane(const Camera& camera, int width, int height);
+
+/// Unit direction through the image point (x, y) in pixels.
+[[nodiscard]] inline Vec3 ray_direction(const ImagePlane& plane, float x, float y) {
+  return Vec3(glm::normalize(plane.corner + static_cast<double>(x) * plane.right +
+                             static_cast<double>(y) * plane.down));
+}
+
 /// Unit direction through the image point (x, y) in pixels (0,0 = top left corner of the top left pixel) of a
 /// width x height image with square pixels; the vertical field of view spans the height.
 [[nodiscard]] Vec3 ray_direction(const Camera& camera, float x, float y, int width, int height);

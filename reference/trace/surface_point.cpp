@@ -25,29 +25,38 @@ float clearance(const Vec3& magnitude) {
   return kRelativeError * max_component(magnitude) + std::numeric_limits<float>::min();
 }
 
-Vec3 interpolated_normal(const scene::Scene& scene, const glm::uvec3& corners, const Vec3& weights) {
-  const Vec3 sum = weights.x * scene.normals[corners.x] + weights.y * scene.normals[corners.y] +
-                   weights.z * scene.normals[corners.z];
-  return sum;
-}
-
 SurfacePoint point_on_triangle(const scene::Scene& scene, std::uint32_t triangle, const Vec3& weights) {
   const glm::uvec3 corners = scene.triangles[triangle];
-  const Vec3 a = weights.x * scene.positions[corners.x];
-  const Vec3 b = weights.y * scene.positions[corners.y];
-  const Vec3 c = weights.z * scene.positions[corners.z];
-  SurfacePoint point;
-  point.position = a + b + c;
-  point.geometric_normal = scene::geometric_normal(scene, triangle);
-  point.clearance = clearance(glm::abs(a) + glm::abs(b) + glm::abs(c));
-  const Vec3 normal = interpolated_normal(scene, corners, weights);
-  const float length = glm::length(normal);
-  // Opposite vertex normals can cancel; the plane's own normal is then the only one there is.
-  point.shading_normal = length > 1e-6F ? normal / length : point.geometric_normal;
+  const Vec3 positions[3] = {scene.positions[corners.x], scene.positions[corners.y],
+                             scene.positions[corners.z]};
+  SurfacePoint point = point_on_plane(positions, weights, scene::geometric_normal(scene, triangle));
+  point.shading_normal = shading_normal(scene, corners, weights, point.geometric_normal);
   return point;
 }
 
 }  // namespace
+
+SurfacePoint point_on_plane(const Vec3 (&corners)[3], const Vec3& weights, const Vec3& normal) {
+  const Vec3 a = weights.x * corners[0];
+  const Vec3 b = weights.y * corners[1];
+  const Vec3 c = weights.z * corners[2];
+  return {a + b + c, normal, normal, clearance(glm::abs(a) + glm::abs(b) + glm::abs(c))};
+}
+
+Vec3 shading_normal(const scene::Scene& scene, const glm::uvec3& corners, const Vec3& weights,
+                    const Vec3& geometric) {
+  const Vec3 sum = weights.x * scene.normals[corners.x] + weights.y * scene.normals[corners.y] +
+                   weights.z * scene.normals[corners.z];
+  const float length = glm::length(sum);
+  // Opposite vertex normals can cancel; the plane's own normal is then the only one there is.
+  return length > 1e-6F ? sum / length : geometric;
+}
+
+void turn_around(SurfaceHit& hit) {
+  hit.is_front = false;
+  hit.point.geometric_normal = -hit.point.geometric_normal;
+  hit.point.shading_normal = -hit.point.shading_normal;
+}
 
 Vec3 ray_origin(const SurfacePoint& point, const Vec3& direction) {
   const float side = glm::dot(direction, point.geometric_normal) >= 0.0F ? 1.0F : -1.0F;
@@ -60,11 +69,7 @@ SurfaceHit surface_hit(const scene::Scene& scene, const Hit& hit, const Vec3& ra
                         ? point_on_triangle(scene, hit.triangle, weights)
                         : point_on_primitive(scene, hit.triangle, hit.barycentrics),
                     true};
-  if (glm::dot(result.point.geometric_normal, ray_direction) > 0.0F) {
-    result.is_front = false;
-    result.point.geometric_normal = -result.point.geometric_normal;
-    result.point.shading_normal = -result.point.shading_normal;
-  }
+  if (glm::dot(result.point.geometric_normal, ray_direction) > 0.0F) turn_around(result);
   return result;
 }
 
@@ -100,7 +105,7 @@ std::vector<SurfacePoint> vertex_points(const scene::Scene& scene) {
     Vec3 weights(kVertexInset / 3.0F);
     weights[best.corner] += 1.0F - kVertexInset;
     points[v] = point_on_triangle(scene, best.triangle, weights);
-    points[v].shading_normal = scene.normals[v];
+    points[v].shading_normal = glm::normalize(scene.normals[v]);
     if (glm::dot(points[v].geometric_normal, scene.normals[v]) < 0.0F) {
       points[v].geometric_normal = -points[v].geometric_normal;
     }

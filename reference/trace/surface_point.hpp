@@ -26,6 +26,15 @@ struct SurfaceHit {
 };
 [[nodiscard]] SurfaceHit surface_hit(const scene::Scene& scene, const Hit& hit, const Vec3& ray_direction);
 
+/// Parts of surface_hit, for tables that hold the corners ready. `weights` are the barycentric ones, their sum is 1.
+/// Both normals of the point are `normal`.
+[[nodiscard]] SurfacePoint point_on_plane(const Vec3 (&corners)[3], const Vec3& weights, const Vec3& normal);
+/// Interpolated vertex normal, unit; `geometric` where opposite normals cancel.
+[[nodiscard]] Vec3 shading_normal(const scene::Scene& scene, const glm::uvec3& corners, const Vec3& weights,
+                                  const Vec3& geometric);
+/// The same point seen from behind.
+void turn_around(SurfaceHit& hit);
+
 /// A point given by hand: no triangle is known, both normals are `normal` (unit).
 [[nodiscard]] SurfacePoint free_point(const Vec3& position, const Vec3& normal);
 

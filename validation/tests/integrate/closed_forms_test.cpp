@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
+#include "agreement.hpp"
 #include "pieces.hpp"
 #include "reference/integrate/gather.hpp"
 #include "reference/scene/builtin.hpp"
@@ -19,61 +19,9 @@ namespace {
 using integrate::GatherSettings;
 using integrate::RgbEstimate;
 using integrate::World;
-
-/// Agreement of an estimate with a truth known up to a relative model error (tessellation, finite planes; 0 =
-/// exact).
-bool agrees(double mean, double standard_error, double truth, double model_error) {
-  constexpr double kRounding =
-      2e-6;  // float storage of radiance, albedo and geometry: a few units of 6e-8 a step
-  const double slack = (model_error + kRounding) * std::abs(truth);
-  return standard_error <= 0.001 * std::abs(truth) && std::abs(mean - truth) <= 4.0 * standard_error + slack;
-}
-
-void expect_agrees(double mean, double standard_error, double truth, double model_error = 0.0) {
-  EXPECT_TRUE(agrees(mean, standard_error, truth, model_error))
-      << "estimate " << mean << " +- " << standard_error << ", truth " << truth << ", relative difference "
-      << mean / truth - 1.0;
-  EXPECT_FALSE(agrees(1.01 * mean, standard_error, truth, model_error)) << "a 1 % error would pass";
-  EXPECT_FALSE(agrees(0.99 * mean, standard_error, truth, model_error)) << "a -1 % error would pass";
-  EXPECT_FALSE(agrees(NAN, standard_error, truth, model_error));
-}
-
-void expect_agrees(const RgbEstimate& estimate, double truth, double model_error = 0.0) {
-  expect_agrees(estimate.mean.y, estimate.standard_error.y, truth, model_error);
-}
-
-RgbEstimate irradiance(const World& world, Vec3 position, Vec3 normal, int samples,
-                       int bounces = integrate::kAllBounces) {
-  GatherSettings settings;
-  settings.samples = samples;
-  settings.max_bounces = bounces;
-  settings.seed = 20240229;
-  return integrate::gather_irradiance(world, trace::free_point(position, glm::normalize(normal)), 1,
-                                      settings);
-}
-
-/// Mean irradiance over an area: jittered points on a strata x strata grid mapped by `place`, one path each,
-/// 16 independent repetitions.
-RgbEstimate mean_irradiance(const World& world, const std::function<trace::SurfacePoint(Vec2)>& place,
-                            int strata, int bounces) {
-  std::mt19937 random(7);
-  std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
-  integrate::RandomisedMean mean(integrate::kRandomisations);
-  integrate::BounceTerms terms;
-  for (int r = 0; r < integrate::kRandomisations; ++r) {
-    RgbD sum(0.0);
-    for (int i = 0; i < strata * strata; ++i) {
-      const Vec2 u((static_cast<float>(i % strata) + uniform(random)) / static_cast<float>(strata),
-                   (static_cast<float>(i / strata) + uniform(random)) / static_cast<float>(strata));
-      integrate::Sampler sampler(11, static_cast<std::uint64_t>(i), static_cast<std::uint32_t>(r), 0);
-      terms.clear();
-      integrate::add_irradiance(world, place(u), bounces, sampler, terms);
-      for (const RgbD& term : terms) sum += term;
-    }
-    mean.add(r, sum / static_cast<double>(strata * strata));
-  }
-  return mean.estimate();
-}
+using test::expect_agrees;
+using test::irradiance;
+using test::mean_irradiance;
 
 Vec3 tilted(double angle_deg) {
   const double a = angle_deg * kPi / 180.0;

@@ -134,6 +134,8 @@ TEST(Bake, RefusesWhatItCannotDo) {
   EXPECT_THROW((void)bake(scene, settings_of(Kind::shadowed, 0)), InputError);
   EXPECT_THROW((void)bake(scene, settings_of(Kind::shadowed, 5, 0)), InputError);
   EXPECT_THROW((void)bake(scene, settings_of(Kind::interreflected)), InputError);
+  const scene::Scene exact = scene::make_builtin_scene("exact-sphere-on-plane");
+  EXPECT_THROW((void)bake(exact, settings_of(Kind::unshadowed)), InputError);
 }
 
 // The bake's own directions: E[cos] = 2/3 for the cosine density (variance 1/18), uniform shifts.
