@@ -231,7 +231,7 @@ void add_obstruction_cases(std::vector<TruthCase>& cases) {
 // ---------------------------------------------------------------- between surfaces
 
 // Means over an area are sums over Gauss-Legendre nodes: the irradiances are smooth functions of the place, so few
-// nodes are exact to far below rounding (truths_test.cpp puts the closed form of each point into the same sums).
+// nodes are exact to far below the margins.
 
 /// Sum of weight x irradiance over the nodes, from emitters of radiance 1.
 std::function<Estimator()> mean_over(const std::function<void(scene::Scene&, std::uint32_t)>& add,
