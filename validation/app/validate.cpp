@@ -27,6 +27,7 @@ struct Options {
   std::string junit;
   std::string json;
   std::string size = "384x288";
+  std::string tier = "quick";
   checks::Budget budget;
 };
 
@@ -40,6 +41,7 @@ std::string reproducing_command(const Options& o) {
   command += " --bands";
   for (const int bands : o.bands) command += fmt::format(" {}", bands);
   if (!o.families.empty()) command += fmt::format(" --checks {}", fmt::join(o.families, ","));
+  if (o.tier != "quick") command += " --tier " + o.tier;
   command +=
       fmt::format(" --size {} --spp {} --samples {} --gather-samples {} --seed {}", o.size,
                   o.budget.image_samples, o.budget.bake_samples, o.budget.gather_samples, o.budget.seed);
@@ -67,6 +69,7 @@ checks::Suite make_suite(const Options& options) {
     suite.environments.push_back(load(one));
   }
   suite.budget = options.budget;
+  suite.budget.tier = options.tier == "nightly" ? checks::Tier::nightly : checks::Tier::quick;
   const Size size = parse_size(options.size);
   suite.budget.width = size.width;
   suite.budget.height = size.height;
@@ -91,6 +94,7 @@ report::Report start_report(const Options& options) {
   report.machine = machine();
   const checks::Budget& b = options.budget;
   report.settings = {{"seed", std::to_string(b.seed)},
+                     {"tier", options.tier},
                      {"significance of each statistical test, its many values together",
                       fmt::format("{:g}", b.significance)},
                      {"lookup of environment images", options.light.lookup},
@@ -130,8 +134,9 @@ int run(const Options& options) {
     family.run(suite, report);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const auto added = static_cast<double>(std::max<std::size_t>(1, report.findings.size() - before));
-    for (std::size_t i = before; i < report.findings.size(); ++i)
-      report.findings[i].seconds = seconds / added;
+    for (std::size_t i = before; i < report.findings.size(); ++i) {
+      if (report.findings[i].seconds == 0.0) report.findings[i].seconds = seconds / added;  // not timed alone
+    }
   }
   const std::string json = report::to_json(report).dump(2) + "\n";
   write_text_atomically(folder / "report.json", json);
@@ -162,6 +167,9 @@ void register_validate(CLI::App& app, Action& chosen) {
                    fmt::format("families to run: {} (default: all)", fmt::join(names, ",")))
       ->delimiter(',')
       ->check(CLI::IsMember(names));
+  verb->add_option("--tier", options->tier,
+                   "quick: biases of 0.5 % would show; nightly: of 0.1 % (default: quick)")
+      ->check(CLI::IsMember({"quick", "nightly"}));
   verb->add_option("-o,--output", options->output, "folder for report.html, report.json and junit.xml")
       ->required();
   verb->add_option("--junit", options->junit, "write the JUnit XML here too");

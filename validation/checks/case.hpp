@@ -11,8 +11,12 @@
 
 namespace plumbline::checks {
 
+/// How fine biases must be resolved: seconds on every change, or minutes every night.
+enum class Tier { quick, nightly };
+
 /// How much work a run may do, and how often it may cry wolf.
 struct Budget {
+  Tier tier = Tier::quick;
   std::uint64_t seed = 0;
   int threads = 0;
   double significance = 1e-4;  // family-wise: chance that a run without any defect reports one

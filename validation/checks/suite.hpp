@@ -25,6 +25,10 @@ void check_transfer(const Suite& suite, report::Report& report);
 /// Path tracer and transfer in a white furnace, on each scene.
 void check_furnace(const Suite& suite, report::Report& report);
 
+/// The path tracer against every closed form of light transport, and the judge itself: are its standard errors right,
+/// does it find biases as often as it says, does it cry wolf?
+void check_truths(const Suite& suite, report::Report& report);
+
 /// Images of shadowed PRT against direct-light path tracing, under the band-limited and under the full light.
 void check_images(const Suite& suite, report::Report& report);
 

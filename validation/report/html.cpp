@@ -108,11 +108,9 @@ std::string provenance(const Report& report) {
 }
 
 std::string contents(const Parts& parts) {
-  constexpr std::pair<const char*, const char*> kEntries[] = {{"galleries", "Images"},
-                                                              {"charts", "Charts"},
-                                                              {"tables", "Tables"},
-                                                              {"findings", "Checks"},
-                                                              {"provenance", "Settings"}};
+  constexpr std::pair<const char*, const char*> kEntries[] = {
+      {"galleries", "Images"}, {"forests", "Intervals"}, {"charts", "Charts"},
+      {"tables", "Tables"},    {"findings", "Checks"},   {"provenance", "Settings"}};
   std::string links;
   for (const auto& [part, word] : kEntries) {
     if (!parts.at(part).empty()) links += fmt::format("<a href=\"#{}\">{}</a>\n", part, word);
@@ -141,6 +139,7 @@ std::string to_html(const Report& report) {
                  {"attention", html::attention(report)},
                  {"headlines", headlines(report)},
                  {"galleries", html::galleries(report)},
+                 {"forests", html::forests(report)},
                  {"charts", html::charts(report)},
                  {"tables", html::tables(report)},
                  {"findings", html::findings(report)},

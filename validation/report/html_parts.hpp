@@ -19,6 +19,7 @@ namespace plumbline::report::html {
 
 /// @throws InputError when a picture's pixels are not width * height.
 [[nodiscard]] std::string galleries(const Report& report);
+[[nodiscard]] std::string forests(const Report& report);
 [[nodiscard]] std::string charts(const Report& report);
 [[nodiscard]] std::string tables(const Report& report);
 

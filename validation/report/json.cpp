@@ -52,7 +52,8 @@ json to_json(const Series& series) {
           {"y", numbers(series.y)},
           {"y_low", numbers(series.y_low)},
           {"y_high", numbers(series.y_high)},
-          {"is_reference", series.is_reference}};
+          {"is_reference", series.is_reference},
+          {"is_bars", series.is_bars}};
 }
 
 json to_json(const Chart& chart) {
@@ -60,6 +61,22 @@ json to_json(const Chart& chart) {
                  {"y_label", chart.y_label}, {"is_x_log", chart.is_x_log}, {"is_y_log", chart.is_y_log},
                  {"series", json::array()}};
   for (const Series& series : chart.series) result["series"].push_back(to_json(series));
+  return result;
+}
+
+json to_json(const Forest& forest) {
+  json result = {{"title", forest.title},
+                 {"caption", forest.caption},
+                 {"unit", forest.unit},
+                 {"band", number(forest.band)},
+                 {"rows", json::array()}};
+  for (const Forest::Row& row : forest.rows) {
+    result["rows"].push_back({{"name", row.name},
+                              {"value", number(row.value)},
+                              {"low", number(row.low)},
+                              {"high", number(row.high)},
+                              {"verdict", checks::to_string(row.verdict)}});
+  }
   return result;
 }
 
@@ -116,6 +133,7 @@ json to_json(const Report& report) {
                   {"settings", named(report.settings)},
                   {"headlines", each(report.headlines)},
                   {"galleries", each(report.galleries)},
+                  {"forests", each(report.forests)},
                   {"charts", each(report.charts)},
                   {"tables", each(report.tables)},
                   {"findings", each(report.findings)},

@@ -406,6 +406,7 @@ function datasetOf(series, points, index, ink) {
     borderDash: series.is_reference ? [6, 4] : [], pointRadius: series.is_reference || isDense ? 0 : 4, pointHoverRadius: 5,
     pointStyle: series.is_reference ? dashes(colour) : kMarkers[index % kMarkers.length], pointBorderWidth: 2,
     order: series.is_reference ? 1 : 0,
+    ...(series.is_bars ? { type: 'bar', barPercentage: 1, categoryPercentage: 0.96, borderWidth: 0, grouped: false, order: 2 } : {}),
   };
 }
 
@@ -418,6 +419,7 @@ function tooltipLine(item) {
 function optionsOf(chart, drawn, ink) {
   const visible = drawn.flatMap((series) => series.points.filter((p) => Number.isFinite(p.y)));
   const heights = visible.flatMap((p) => [p.y, p.low, p.high]).filter((y) => canDraw(y, chart.is_y_log));
+  if (chart.series.some((series) => series.is_bars)) heights.push(0);
   return {
     animation: false, responsive: true, maintainAspectRatio: false, color: ink.text,
     font: { family: 'system-ui, sans-serif' }, interaction: { mode: 'nearest', intersect: false },

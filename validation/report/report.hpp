@@ -48,6 +48,7 @@ struct Series {
   std::vector<double> y_low;  // empty, or one per point: the interval
   std::vector<double> y_high;
   bool is_reference = false;  // a theoretical curve: dashed, no markers
+  bool is_bars = false;       // a histogram: x are the middles of bins of equal width
 };
 struct Chart {
   std::string title;
@@ -57,6 +58,23 @@ struct Chart {
   bool is_x_log = false;
   bool is_y_log = false;
   std::vector<Series> series;
+};
+
+/// Many measured values of one kind, one above the other on one axis, each with its interval and the band it should
+/// lie in: a forest plot. Readable without JavaScript.
+struct Forest {
+  struct Row {
+    std::string name;
+    double value = 0.0;
+    double low = 0.0;
+    double high = 0.0;
+    checks::Verdict verdict = checks::Verdict::inconclusive;
+  };
+  std::string title;
+  std::string caption;
+  std::string unit;   // "%"
+  double band = 0.0;  // the axis shows +- 1.6 of it; > 0
+  std::vector<Row> rows;
 };
 
 struct Table {
@@ -76,6 +94,7 @@ struct Report {
   std::vector<std::pair<std::string, std::string>> settings;  // seeds, samples, significance
   std::vector<Headline> headlines;
   std::vector<Gallery> galleries;
+  std::vector<Forest> forests;
   std::vector<Chart> charts;
   std::vector<Table> tables;
   std::vector<checks::Finding> findings;
@@ -94,7 +113,7 @@ struct Report {
                                           const image::Image& test, double scale, std::string unit);
 
 /// Everything but the pictures; keys: title, summary, verdict, date, version, command, machine, settings,
-/// headlines, galleries, charts, tables, findings, data. Settings are an object; the values of a repeated
+/// headlines, galleries, forests, charts, tables, findings, data. Settings are an object; the values of a repeated
 /// name are joined by ", ". Bytes that are no UTF-8 become U+FFFD. Non-finite numbers become the strings
 /// "nan", "inf", "-inf".
 [[nodiscard]] nlohmann::json to_json(const Report& report);
