@@ -6,88 +6,71 @@
 #include <type_traits>
 #include <utility>
 
+#include "prt/sh/recurrence.hpp"
 #include "reference/base/error.hpp"
 
 namespace plumbline::sh {
 namespace {
 
-// Real spherical harmonics as columns of constant m:
-//
-//   y_lm = q_l^m(z) Re (-x - iy)^m,   y_l,-m = q_l^m(z) Im (-x - iy)^m,   m >= 0.
-//
-// The minus signs carry the Condon-Shortley phase, and q_l^m = sqrt(2) K_lm P_l^m(z) / (1 - z^2)^(m/2)
-// (without the root of 2 at m = 0) is a polynomial of degree l - m. From
-//
-//   (l - m) P_l^m = (2l - 1) z P_(l-1)^m - (l + m - 1) P_(l-2)^m,
-//   K_lm^2 = (2l + 1)/(4 pi) (l - m)!/(l + m)!
-//
-// follows
-//
-//   q_m^m = sqrt((2 - [m = 0]) / (4 pi) * product_(k=1..m) (2k + 1)/(2k))
-//   q_l^m = a_lm z q_(l-1)^m - b_lm q_(l-2)^m
-//   a_lm^2 = (4 l^2 - 1) / (l^2 - m^2)
-//   b_lm^2 = (2l + 1)/(2l - 3) * ((l - 1)^2 - m^2)/(l^2 - m^2).
-//
-// At m = l - 1, b = 0 and a = sqrt(2l + 1): the first step needs no special case. The largest value is
-// q_l^m(1), about ((1 + sqrt 5)/2)^l at m = l / sqrt 5: 1e209 at l = 1000. So double cannot overflow, and
-// where (x + iy)^m underflows the product is below 1e-99. float would overflow from l = 186 on and loses
-// digits long before: here it is a storage type.
-//
-// The loops run over l outside and m inside, so that the inner ones have no dependence and vectorise.
+// The recurrence of recurrence.hpp, in double. The loops run over l outside and m inside, so that the inner ones have
+// no dependence and vectorise. Row l holds q_l^l, then alpha, beta and gamma of m = 0 … l-1: 3 l + 1 numbers.
 
-/// Row l holds q_l^l, then a_l0 … a_l,l-1, then b_l0 … b_l,l-1: 2l + 1 numbers, n^2 in all.
+constexpr std::size_t row_start(int l) {
+  return static_cast<std::size_t>(l) +
+         3 * (static_cast<std::size_t>(l) * static_cast<std::size_t>(l - 1) / 2);
+}
+
 std::vector<double> recurrence_constants(int bands) {
-  std::vector<double> constants;
-  constants.reserve(static_cast<std::size_t>(coefficient_count(bands)));
-  long double square = 1.0L / (4.0L * std::numbers::pi_v<long double>);  // (q_l^l)^2, without the 2 of m > 0
+  std::vector<double> constants(row_start(bands));
+  const std::vector<double> starts = recurrence_starts<double>(bands);
   for (int l = 0; l < bands; ++l) {
-    const auto ll = static_cast<long double>(l);
-    if (l > 0) square *= (2.0L * ll + 1.0L) / (2.0L * ll);
-    constants.push_back(static_cast<double>(std::sqrt(l > 0 ? 2.0L * square : square)));
-    for (int m = 0; m < l; ++m) {
-      const long double gap = ll * ll - static_cast<long double>(m) * m;
-      constants.push_back(static_cast<double>(std::sqrt((4.0L * ll * ll - 1.0L) / gap)));
-    }
-    for (int m = 0; m < l; ++m) {
-      const long double mm = static_cast<long double>(m) * m;
-      const long double ratio = ((ll - 1.0L) * (ll - 1.0L) - mm) / (ll * ll - mm);
-      // At m = l - 1 the ratio is 0 (and at l = 1 the other factor is negative).
-      constants.push_back(
-          m == l - 1 ? 0.0 : static_cast<double>(std::sqrt((2.0L * ll + 1.0L) / (2.0L * ll - 3.0L) * ratio)));
+    const auto length = static_cast<std::size_t>(l);
+    double* row = constants.data() + row_start(l);
+    *row++ = starts[length];
+    for (int m = 0; m < l; ++m, ++row) {
+      const RecurrenceStep<double> step = recurrence_step<double>(l, m);
+      row[0] = step.alpha;
+      row[length] = step.beta;
+      row[2 * length] = step.gamma;
     }
   }
   return constants;
 }
 
+/// 1 - |z| of a unit vector, to all digits at the poles.
+double height_below_pole(double x, double y, double z) {
+  return (x * x + y * y) / (1.0 + std::abs(z));
+}
+
 template <class Store>
 void evaluate_rows(int bands, const double* constants, double x, double y, double z, Store* values) {
-  std::array<double, kMaxBands> row_a;  // q_l^m of even l
-  std::array<double, kMaxBands> row_b;  // and of odd l
-  std::array<double, kMaxBands> re;     // Re (-x - iy)^m
+  std::array<double, kMaxBands> q;
+  std::array<double, kMaxBands> difference;
+  std::array<double, kMaxBands> re;  // Re (-x - iy)^m
   std::array<double, kMaxBands> im;
-  re[0] = 1.0;
+  const double t = height_below_pole(x, y, z);
+  const double sign = z < 0.0 ? -1.0 : 1.0;
+  re[0] = recurrence_scale<double>(bands);
   im[0] = 0.0;
-  double* previous = row_b.data();
-  double* current = row_a.data();
-  current[0] = constants[0];
-  values[0] = static_cast<Store>(constants[0]);
-  ++constants;
-  for (int l = 1; l < bands; ++l) {
-    std::swap(previous, current);
+  for (int l = 0; l < bands; ++l) {
     const auto size = static_cast<std::size_t>(l);
-    const double* a = constants + 1;
-    const double* b = a + l;
-    current[size - 1] = 0.0;  // q_(l-2)^(l-1)
-    for (std::size_t m = 0; m < size; ++m) current[m] = a[m] * z * previous[m] - b[m] * current[m];
-    current[size] = constants[0];
-    constants = b + l;
-
-    re[size] = y * im[size - 1] - x * re[size - 1];
-    im[size] = -x * im[size - 1] - y * re[size - 1];
+    const double* alpha = constants + 1;
+    const double* beta = alpha + l;
+    const double* gamma = beta + l;
+    for (std::size_t m = 0; m < size; ++m) {
+      difference[m] = sign * (alpha[m] * difference[m] - beta[m] * t * q[m]);
+      q[m] = sign * gamma[m] * q[m] + difference[m];
+    }
+    q[size] = constants[0];
+    difference[size] = 0.0;
+    constants = gamma + l;
+    if (l > 0) {
+      re[size] = y * im[size - 1] - x * re[size - 1];
+      im[size] = -x * im[size - 1] - y * re[size - 1];
+    }
     Store* centre = values + index(l, 0);
-    centre[0] = static_cast<Store>(current[0]);
-    for (int m = 1; m <= l; ++m) centre[m] = static_cast<Store>(current[m] * re.data()[m]);
-    for (int m = 1; m <= l; ++m) centre[-m] = static_cast<Store>(current[m] * im.data()[m]);
+    for (int m = 0; m <= l; ++m) centre[m] = static_cast<Store>(q.data()[m] * re.data()[m]);
+    for (int m = 1; m <= l; ++m) centre[-m] = static_cast<Store>(q.data()[m] * im.data()[m]);
   }
 }
 
@@ -98,18 +81,28 @@ void store_pair(double q, double re, double im, Store* values) {
   if constexpr (kM > 0) values[index(kL, -kM)] = static_cast<Store>(q * im);
 }
 
+/// What a direction is to the recurrence.
+struct Place {
+  double x;
+  double y;
+  double t;     // 1 - |z|
+  double sign;  // of z
+};
+
 template <int kBands, int kM, class Store>
-void evaluate_column(const double* constants, double z, double re, double im, Store* values) {
-  double previous = 0.0;
-  double current = constants[kM * kM];
-  store_pair<kM, kM>(current, re, im, values);
+void evaluate_column(const double* constants, const Place& at, double re, double im, Store* values) {
+  double difference = 0.0;
+  double q = constants[row_start(kM)];
+  store_pair<kM, kM>(q, re, im, values);
   const auto step = [&]<int kL>(std::integral_constant<int, kL>) {
-    const double* row = constants + kL * kL + 1;
-    double next = row[kM] * z * current;
-    if constexpr (kL > kM + 1) next -= row[kL + kM] * previous;
-    previous = current;
-    current = next;
-    store_pair<kL, kM>(current, re, im, values);
+    const double* row = constants + row_start(kL) + 1 + kM;
+    if constexpr (kL > kM + 1) {
+      difference = at.sign * (row[0] * difference - row[kL] * at.t * q);
+    } else {
+      difference = at.sign * (-row[kL] * at.t * q);
+    }
+    q = at.sign * row[2 * kL] * q + difference;
+    store_pair<kL, kM>(q, re, im, values);
   };
   [&]<int... kStep>(std::integer_sequence<int, kStep...>) {
     (step(std::integral_constant<int, kM + 1 + kStep>{}), ...);
@@ -119,7 +112,8 @@ void evaluate_column(const double* constants, double z, double re, double im, St
 
 template <int kBands, class Store>
 void evaluate_unrolled(const double* constants, double x, double y, double z, Store* values) {
-  double re = 1.0;
+  const Place at{x, y, height_below_pole(x, y, z), z < 0.0 ? -1.0 : 1.0};
+  double re = recurrence_scale<double>(kBands);
   double im = 0.0;
   const auto column = [&]<int kM>(std::integral_constant<int, kM>) {
     if constexpr (kM > 0) {
@@ -127,7 +121,7 @@ void evaluate_unrolled(const double* constants, double x, double y, double z, St
       im = -x * im - y * re;
       re = next;
     }
-    evaluate_column<kBands, kM>(constants, z, re, im, values);
+    evaluate_column<kBands, kM>(constants, at, re, im, values);
   };
   [&]<int... kM>(std::integer_sequence<int, kM...>) {
     (column(std::integral_constant<int, kM>{}), ...);

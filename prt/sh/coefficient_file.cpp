@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "prt/sh/convention.hpp"
 #include "prt/sh/lighting.hpp"
 #include "reference/base/atomic_file.hpp"
 #include "reference/base/error.hpp"
@@ -67,6 +68,13 @@ RgbD read_row(const std::filesystem::path& path, const json& row, std::size_t i)
   return value;
 }
 
+/// How many numbers stand on a line: what belongs together.
+std::size_t row_length(Layout layout, std::size_t count) {
+  if (layout == Layout::interleaved) return 3;
+  if (layout == Layout::planar || layout == Layout::cosine_sine) return count / 3;
+  return layout == Layout::splat ? count : 4;
+}
+
 }  // namespace
 
 std::string to_json(const ShRgb& lighting) {
@@ -84,6 +92,24 @@ std::string to_json(const ShRgb& lighting) {
       throw InputError(fmt::format("sh::to_json: coefficients[{}]: not finite: {} {} {}", i, c.r, c.g, c.b));
     }
     text += fmt::format("    [{:.17g}, {:.17g}, {:.17g}]{}\n", c.r, c.g, c.b, i + 1 < expected ? "," : "");
+  }
+  return text + "  ]\n}\n";
+}
+
+std::string to_json(const ShRgb& lighting, const KnownConvention& known) {
+  if (known.name == known_conventions().front().name) return to_json(lighting);
+  if (lighting.bands > known.max_bands) {
+    throw InputError(fmt::format("convention {}: expected at most {} bands, got {}", known.name,
+                                 known.max_bands, lighting.bands));
+  }
+  const std::vector<double> values = from_ours(lighting, known.convention);
+  const std::size_t length = row_length(known.convention.layout, values.size());
+  std::string text = fmt::format("{{\n  \"bands\": {},\n  \"convention\": \"{}\",\n  \"coefficients\": [\n",
+                                 lighting.bands, known.name);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    text += i % length == 0 ? "    [" : ", ";
+    text += fmt::format("{:.17g}", values[i]);
+    if (i % length == length - 1) text += i + 1 < values.size() ? "],\n" : "]\n";
   }
   return text + "  ]\n}\n";
 }

@@ -27,8 +27,9 @@ Receiver receiver_at(const trace::SurfacePoint& point) {
 
 /// Samples of the lights and directions followed at the first vertex: its light is most of the noise of an image, and the
 /// camera ray is paid already. Powers of two.
-constexpr std::uint32_t kLightSplits = 2;
-constexpr std::uint32_t kDirectionSplits = 2;
+constexpr std::uint32_t kSkySplits = 4;
+constexpr std::uint32_t kEmitterSplits = 2;
+constexpr std::uint32_t kDirectionSplits = 4;
 /// Vertices whose samples are points of one sequence over the whole pixel; deeper ones are so rarely alike from path to path
 /// that independent numbers serve as well (measured: bench/point_sets_bench).
 constexpr int kStratifiedVertices = 3;
@@ -68,28 +69,39 @@ struct Draw {
 /// has nothing to add to that estimate.
 RgbD sky_by_light(const World& world, const trace::SurfacePoint& point, std::uint32_t count,
                   const Draw& first, Sampler& sampler) {
-  std::array<Vec2, kLightSplits> points;
-  std::array<light::DirectionSample, kLightSplits> samples;
+  std::array<Vec2, kSkySplits> points;
+  std::array<light::DirectionSample, kSkySplits> samples;
   Draw draw = first;
   for (std::uint32_t s = 0; s < count; ++s, ++draw.split) points[s] = draw.light(sampler);
   world.environment_sampler.sample(world.environment_sampler.lobe(point.shading_normal),
                                    std::span(points).first(count), std::span(samples).first(count));
-  RgbD sum(0.0);
+  // Light below the horizon needs no ray.
+  std::array<trace::Ray, kSkySplits> rays;
+  std::array<RgbD, kSkySplits> light;
+  std::size_t left = 0;
   for (std::uint32_t s = 0; s < count; ++s) {
     const light::DirectionSample& sample = samples[s];
     if (!(sample.pdf > 0.0) || is_black(sample.radiance)) continue;
     const double cosine = received_cosine(point, sample.direction);
     if (!(cosine > 0.0)) continue;
-    if (!is_visible(world, point, sample.direction, std::numeric_limits<float>::infinity())) continue;
-    sum += RgbD(sample.radiance) * (cosine / sample.pdf);
+    rays[left] = {trace::ray_origin(point, sample.direction), sample.direction};
+    light[left++] = RgbD(sample.radiance) * (cosine / sample.pdf);
+  }
+  RgbD sum(0.0);
+  if (left == 0) return sum;
+  if (left == 1) return world.caster.is_occluded(rays[0]) ? sum : light[0];
+  const std::uint32_t occluded = world.caster.occluded(std::span(rays).first(left));
+  for (std::size_t i = 0; i < left; ++i) {
+    if ((occluded >> i & 1U) == 0U) sum += light[i];
   }
   return sum;
 }
 
-/// How many samples of one vertex draw from the lights, and how many follow a direction: both count in the weights
-/// (Veach's multi-sample power heuristic).
+/// How many samples of one vertex draw from the sky and from emitters, and how many follow a direction: the last two count in
+/// the weights (Veach's multi-sample power heuristic).
 struct Counts {
-  std::uint32_t light = 1;
+  std::uint32_t sky = 1;
+  std::uint32_t emitter = 1;
   std::uint32_t direction = 1;
 };
 
@@ -100,7 +112,7 @@ RgbD emitters_by_light(const World& world, const trace::SurfacePoint& point, con
   const double cosine = received_cosine(point, sample->direction);
   if (!(cosine > 0.0)) return RgbD(0.0);
   if (!is_mutually_visible(world, point, sample->on_emitter)) return RgbD(0.0);
-  const double weight = power_heuristic(counts.light * sample->pdf, counts.direction * cosine * kInvPi);
+  const double weight = power_heuristic(counts.emitter * sample->pdf, counts.direction * cosine * kInvPi);
   return RgbD(sample->radiance) * (weight * cosine / sample->pdf);
 }
 
@@ -131,20 +143,23 @@ RgbD punctual_by_light(const World& world, const trace::SurfacePoint& point, flo
   return RgbD(sample.irradiance) * (cosine * total / weight);
 }
 
-/// Irradiance straight from the lights, drawn from the lights: samples `first` … `first` + counts.light - 1 of `splits`.
+/// Irradiance straight from the lights, drawn from the lights. `split`: which of the vertex' walks this is.
 RgbD direct_by_light(const World& world, const trace::SurfacePoint& point, const Counts& counts,
-                     const Draw& first, Sampler& sampler) {
-  const bool has_sky = world.is_sky_sampled && !world.is_sky_black;
-  const bool has_emitters = !world.emitters.is_empty();
+                     const VertexDraws* draws, std::uint32_t split, std::uint32_t splits, Sampler& sampler) {
   RgbD sum(0.0);
-  if (has_sky) sum += sky_by_light(world, point, counts.light, first, sampler);
-  if (has_emitters) {
-    for (Draw draw = first; draw.split < first.split + counts.light; ++draw.split) {
-      const Vec2 pick = draw.light(sampler);
-      sum += emitters_by_light(world, point, counts, pick, draw.emitter(sampler));
-    }
+  if (world.is_sky_sampled && !world.is_sky_black) {
+    const Draw first{draws, split * counts.sky, splits * counts.sky};
+    sum += sky_by_light(world, point, counts.sky, first, sampler) / static_cast<double>(counts.sky);
   }
-  sum /= static_cast<double>(counts.light);
+  const Draw first{draws, split * counts.emitter, splits * counts.emitter};
+  if (!world.emitters.is_empty()) {
+    RgbD emitters(0.0);
+    for (Draw draw = first; draw.split < first.split + counts.emitter; ++draw.split) {
+      const Vec2 pick = draw.light(sampler);
+      emitters += emitters_by_light(world, point, counts, pick, draw.emitter(sampler));
+    }
+    sum += emitters / static_cast<double>(counts.emitter);
+  }
   if (!world.scene.lights.empty()) sum += punctual_by_light(world, point, first.emitter(sampler).y);
   return sum;
 }
@@ -159,7 +174,7 @@ RgbD emitter_by_direction(const World& world, const trace::SurfacePoint& point, 
                           const Counts& counts, const Vec3& direction, double pdf) {
   if (is_black(meeting.emission)) return RgbD(0.0);
   const double by_light = emitter_pdf(world, receiver_at(point), meeting, direction);
-  return RgbD(meeting.emission) * (kPi * power_heuristic(counts.direction * pdf, counts.light * by_light));
+  return RgbD(meeting.emission) * (kPi * power_heuristic(counts.direction * pdf, counts.emitter * by_light));
 }
 
 /// Probability to go on. The first bounce always does: it carries most of the indirect light, and ending it
@@ -233,8 +248,8 @@ bool step(const World& world, int max_bounces, double share, Sampler& sampler, B
 void add_irradiance(const World& world, const trace::SurfacePoint& start, int max_bounces, Sampler& sampler,
                     BounceTerms& terms) {
   const PathDraws draws = make_draws(sampler);
-  const Counts counts{kLightSplits, kDirectionSplits};
-  add(terms, 0, direct_by_light(world, start, counts, {&draws[0], 0, counts.light}, sampler));
+  const Counts counts{kSkySplits, kEmitterSplits, kDirectionSplits};
+  add(terms, 0, direct_by_light(world, start, counts, &draws[0], 0, 1, sampler));
   const double share = 1.0 / counts.direction;
   for (std::uint32_t s = 0; s < counts.direction; ++s) {
     Walk walk{start, Rgb(1.0F), 0, counts, {&draws[0], s, counts.direction}};
@@ -242,10 +257,10 @@ void add_irradiance(const World& world, const trace::SurfacePoint& start, int ma
       ++walk.bounce;
       const auto depth = static_cast<std::size_t>(walk.bounce);
       walk.draw.draws = depth < draws.size() ? &draws[depth] : nullptr;
-      walk.counts = {1, 1};
+      walk.counts = {};
       add(terms, walk.bounce,
           RgbD(walk.throughput) * share *
-              direct_by_light(world, walk.point, walk.counts, walk.draw, sampler));
+              direct_by_light(world, walk.point, walk.counts, walk.draw.draws, s, counts.direction, sampler));
     }
   }
 }

@@ -7,9 +7,11 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "reference/base/error.hpp"
 #include "reference/base/parallel.hpp"
+#include "reference/integrate/allocation.hpp"
 #include "reference/integrate/film.hpp"
 #include "reference/integrate/shards.hpp"
 
@@ -137,15 +139,29 @@ void render_pixel(const World& world, const scene::Camera& camera, const RenderS
   film.radiance[pixel] = combined(film.radiance[pixel], mean.estimate());
 }
 
-void render_round(const World& world, const scene::Camera& camera, const RenderSettings& settings, int round,
-                  int samples, const std::function<void(double)>& progress, Film& film) {
+/// Samples of each pixel of a round: `samples` where they are dealt evenly, about that many on average elsewhere.
+struct Round {
+  int number = 0;
+  int samples = 0;
+  Allocation allocation;
+
+  [[nodiscard]] int samples_of(std::size_t pixel, int randomisations) const {
+    return allocation.is_uniform() ? samples : allocation.samples(pixel, samples, randomisations);
+  }
+};
+
+void render_round(const World& world, const scene::Camera& camera, const RenderSettings& settings,
+                  const Round& round, const std::function<void(double)>& progress, Film& film) {
   const std::vector<Tile> tiles = tiles_of(settings);
   std::atomic<std::size_t> done{0};
   parallel_for(tiles.size(), settings.threads, [&](std::size_t t) {
     BounceTerms terms;
     for (int y = tiles[t].y0; y < tiles[t].y1; ++y) {
       for (int x = tiles[t].x0; x < tiles[t].x1; ++x) {
-        render_pixel(world, camera, settings, round, samples, x, y, terms, film);
+        const auto pixel =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(film.width) + static_cast<std::size_t>(x);
+        const int samples = round.samples_of(pixel, settings.randomisations);
+        render_pixel(world, camera, settings, round.number, samples, x, y, terms, film);
       }
     }
     if (progress) progress(static_cast<double>(done.fetch_add(1) + 1) / static_cast<double>(tiles.size()));
@@ -250,55 +266,100 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Samples of the next round: towards the target, at most four times what there is, within the time left; 0 =
-/// stop.
-int next_round(const RenderSettings& settings, std::int64_t done, double relative_error, double seconds) {
+double mean_samples(const Film& film) {
+  double sum = 0.0;
+  double pixels = 0.0;
+  for (const RgbEstimate& estimate : film.radiance) {
+    sum += static_cast<double>(estimate.samples);
+    pixels += estimate.samples > 0 ? 1.0 : 0.0;
+  }
+  return sum / std::max(pixels, 1.0);
+}
+
+/// The image so far, and what is known of it.
+struct Progressive {
+  Film film;
+  RenderResult result;
+  std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+  double spent_samples = 0.0;  // a pixel, those of the pilot included
+
+  void add_round(const World& world, const scene::Camera& camera, const RenderSettings& settings,
+                 const Round& round, const std::function<void(double)>& progress) {
+    const double before = mean_samples(film);
+    render_round(world, camera, settings, round, progress, film);
+    const OverallError error = overall_error(film.radiance);
+    const double after = mean_samples(film);
+    spent_samples += after - before;
+    result.samples_per_pixel = std::llround(after);
+    result.relative_error = error.relative;
+    result.mean_radiance = error.mean;
+    result.seconds = seconds_since(start);
+  }
+};
+
+/// Mean samples of the next round: towards the target, at most three times what there is, within the time left; 0 = stop.
+int next_round(const RenderSettings& settings, const Progressive& image) {
+  const std::int64_t done = image.result.samples_per_pixel;
   // Without a target there is always more to do.
-  double wanted = settings.target_error ? samples_towards(*settings.target_error, done, relative_error)
-                                        : samples_towards(1.0, done, std::numeric_limits<double>::infinity());
+  double wanted = settings.target_error
+                      ? samples_towards(*settings.target_error, done, image.result.relative_error)
+                      : samples_towards(1.0, done, std::numeric_limits<double>::infinity());
   if (settings.max_seconds) {
-    const double rate = static_cast<double>(done) / std::max(seconds, 1e-6);
-    const double affordable = std::floor((*settings.max_seconds - seconds) * rate);
+    const double rate = image.spent_samples / std::max(image.result.seconds, 1e-6);
+    const double affordable = std::floor((*settings.max_seconds - image.result.seconds) * rate);
     if (affordable < 2.0) return 0;  // a round of one sample would have no standard error
     wanted = std::min(wanted, affordable);
   }
   return static_cast<int>(wanted);
 }
 
+void report_progress(const RenderSettings& settings, const RenderResult& result) {
+  if (!settings.progress) return;
+  const double by_time = settings.max_seconds ? result.seconds / *settings.max_seconds : 0.0;
+  const double ratio = settings.target_error ? *settings.target_error / result.relative_error : 0.0;
+  settings.progress(std::min(1.0, std::max(by_time, ratio * ratio)));
+}
+
+// Towards a target error the first round is a pilot: it says where the noise is, and is then left out of the image
+// (Allocation says why) unless no time is left for another. What a later round adds is decided on the whole image's error alone,
+// to which one pixel contributes next to nothing.
+void render_progressively(const World& world, const scene::Camera& camera, const RenderSettings& settings,
+                          Progressive& image) {
+  Round round{0, settings.max_seconds ? 2 : std::max(kRandomisations, settings.randomisations), {}};
+  bool is_pilot = settings.target_error.has_value();
+  while (round.samples > 0) {
+    image.add_round(world, camera, settings, round, {});
+    report_progress(settings, image.result);
+    if (settings.target_error && image.result.relative_error <= *settings.target_error && !is_pilot) {
+      image.result.stop = StopReason::target_error;
+      return;
+    }
+    image.result.stop = StopReason::max_seconds;
+    const int samples = next_round(settings, image);
+    const bool is_enough = image.result.samples_per_pixel >= kRandomisations;
+    if (is_pilot && samples > 0 && is_enough) {
+      is_pilot = false;
+      round.allocation = Allocation(image.film.radiance, settings.width, settings.height);
+      image.film = make_film(settings);
+      image.result.samples_per_pixel = 0;
+    }
+    round.samples = samples;
+    ++round.number;
+  }
+}
+
 }  // namespace
 
 RenderResult render(const World& world, const scene::Camera& camera, const RenderSettings& settings) {
   require_valid(settings);
-  const auto start = std::chrono::steady_clock::now();
-  Film film = make_film(settings);
-  RenderResult result;
-  const bool is_progressive = settings.target_error.has_value() || settings.max_seconds.has_value();
-  int samples = is_progressive ? (settings.max_seconds ? 2 : kRandomisations) : settings.samples_per_pixel;
-  for (int round = 0; samples > 0; ++round) {
-    const auto progress = [&](double fraction) {
-      if (settings.progress && !is_progressive) settings.progress(fraction);
-    };
-    render_round(world, camera, settings, round, samples, progress, film);
-    result.samples_per_pixel += samples;
-    result.seconds = seconds_since(start);
-    const OverallError error = overall_error(film.radiance);
-    result.relative_error = error.relative;
-    result.mean_radiance = error.mean;
-    if (!is_progressive) break;
-    if (settings.target_error && error.relative <= *settings.target_error) {
-      result.stop = StopReason::target_error;
-      break;
-    }
-    result.stop = StopReason::max_seconds;
-    samples = next_round(settings, result.samples_per_pixel, error.relative, result.seconds);
-    if (settings.progress) {
-      const double by_time = settings.max_seconds ? result.seconds / *settings.max_seconds : 0.0;
-      const double ratio = settings.target_error ? *settings.target_error / error.relative : 0.0;
-      settings.progress(std::min(1.0, std::max(by_time, ratio * ratio)));
-    }
+  Progressive image{make_film(settings), {}};
+  if (settings.target_error || settings.max_seconds) {
+    render_progressively(world, camera, settings, image);
+  } else {
+    image.add_round(world, camera, settings, {0, settings.samples_per_pixel, {}}, settings.progress);
   }
-  result.image = develop(film, settings);
-  return result;
+  image.result.image = develop(image.film, settings);
+  return std::move(image.result);
 }
 
 }  // namespace plumbline::integrate

@@ -9,6 +9,8 @@
 #include "reference/scene/exact_scenes.hpp"
 #include "reference/scene/plaza.hpp"
 #include "reference/scene/shapes.hpp"
+#include "reference/scene/terrain.hpp"
+#include "reference/scene/text.hpp"
 
 namespace plumbline::scene {
 namespace {
@@ -84,13 +86,31 @@ Scene make_convex() {
   return scene;
 }
 
+Scene make_small_terrain() {
+  return make_terrain(100);
+}
+
+/// "terrain:CELLS".
+constexpr std::string_view kSizedTerrain = "terrain:";
+
+Scene make_sized_terrain(std::string_view name) {
+  const auto cells = parse_integer(name.substr(kSizedTerrain.size()));
+  if (!cells || *cells < kFewestTerrainCells || *cells > kMostTerrainCells) {
+    throw InputError(fmt::format("builtin:{}: expected terrain:CELLS with {} to {} cells a side", name,
+                                 kFewestTerrainCells, kMostTerrainCells));
+  }
+  Scene scene = make_terrain(static_cast<int>(*cells));
+  scene.name = fmt::format("builtin:{}", name);
+  return scene;
+}
+
 struct Entry {
   const char* name;
   const char* description;
   Scene (*make)();
 };
 
-constexpr std::array<Entry, 11> kEntries = {{
+constexpr std::array<Entry, 12> kEntries = {{
     {"cornell", "32 triangles: the Cornell box from its measured data; area light, colour bleeding",
      make_cornell},
     {"sphere-on-plane",
@@ -106,6 +126,10 @@ constexpr std::array<Entry, 11> kEntries = {{
     {"plaza", "78188 triangles: colonnades, arch, knot sculpture; a detailed scene for skies and suns",
      make_plaza},
     {"convex", "20 triangles: icosahedron, albedo 1; white furnace and unshadowed transfer", make_convex},
+    {"terrain",
+     "20000 triangles: hills, to see how costs grow; terrain:CELLS has 2 x CELLS^2 (terrain:2237: ten "
+     "million)",
+     make_small_terrain},
     {"sphere-furnace", "exact sphere seen from inside: emission 1, albedo 0.8; radiance 5 everywhere",
      [] { return make_sphere_room(); }},
     {"bowl", "exact half sphere, open above, albedo 0.8; under `white` irradiance 2.618 everywhere",
@@ -126,6 +150,7 @@ std::vector<BuiltinInfo> builtin_scenes() {
 }
 
 Scene make_builtin_scene(std::string_view name) {
+  if (name.starts_with(kSizedTerrain)) return make_sized_terrain(name);
   std::string known;
   for (const Entry& entry : kEntries) {
     if (name == entry.name) {

@@ -116,6 +116,37 @@ std::optional<Hit> RayCaster::closest_hit(const Ray& ray) const {
   return Hit{query.hit.primID, Vec2(query.hit.u, query.hit.v), query.ray.tfar};
 }
 
+std::uint32_t RayCaster::occluded(std::span<const Ray> rays) const {
+  constexpr int kActive = -1;
+  alignas(32) int active[kMostTogether] = {};
+  RTCRay8 query;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    active[i] = kActive;
+    query.org_x[i] = rays[i].origin.x;
+    query.org_y[i] = rays[i].origin.y;
+    query.org_z[i] = rays[i].origin.z;
+    query.tnear[i] = 0.0F;
+    query.dir_x[i] = rays[i].direction.x;
+    query.dir_y[i] = rays[i].direction.y;
+    query.dir_z[i] = rays[i].direction.z;
+    query.time[i] = 0.0F;
+    query.tfar[i] = rays[i].max_distance;
+    query.mask[i] = 0xFFFFFFFFU;
+    query.id[i] = 0;
+    query.flags[i] = 0;
+  }
+#if PLUMBLINE_EMBREE == 4
+  rtcOccluded8(active, impl_->scene, &query);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded8(active, impl_->scene, &context, &query);
+#endif
+  std::uint32_t result = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) result |= query.tfar[i] < 0.0F ? 1U << i : 0U;
+  return result;
+}
+
 bool RayCaster::is_occluded(const Ray& ray) const {
   RTCRay query = make_ray(ray);
 #if PLUMBLINE_EMBREE == 4

@@ -9,21 +9,7 @@
 namespace plumbline::trace {
 namespace {
 
-// How far a computed point may lie from its triangle, and a computed hit distance from the true one.
-// A convex combination of three vertices carries at most 7 roundings (Pharr, Jakob & Humphreys, "Physically
-// Based Rendering", 4th ed., section 6.8): |error| <= gamma_7 (|b0 p0| + |b1 p1| + |b2 p2|) in each
-// component. The query rounds again, by a similar amount in the vertices' differences to the origin. Sixteen
-// units of relative error cover both; the bound scales with the coordinates alone, so a scene scaled by any
-// factor behaves the same.
-constexpr float kRelativeError = 8.0F * std::numeric_limits<float>::epsilon();
-
 constexpr float kVertexInset = 1e-3F;
-
-// The largest component, not the one along the normal: on a plane through the origin that would be 0, while the query's
-// rounding is that of the other coordinates.
-float clearance(const Vec3& magnitude) {
-  return kRelativeError * max_component(magnitude) + std::numeric_limits<float>::min();
-}
 
 SurfacePoint point_on_triangle(const scene::Scene& scene, std::uint32_t triangle, const Vec3& weights) {
   const glm::uvec3 corners = scene.triangles[triangle];
@@ -36,13 +22,6 @@ SurfacePoint point_on_triangle(const scene::Scene& scene, std::uint32_t triangle
 
 }  // namespace
 
-SurfacePoint point_on_plane(const Vec3 (&corners)[3], const Vec3& weights, const Vec3& normal) {
-  const Vec3 a = weights.x * corners[0];
-  const Vec3 b = weights.y * corners[1];
-  const Vec3 c = weights.z * corners[2];
-  return {a + b + c, normal, normal, clearance(glm::abs(a) + glm::abs(b) + glm::abs(c))};
-}
-
 Vec3 shading_normal(const scene::Scene& scene, const glm::uvec3& corners, const Vec3& weights,
                     const Vec3& geometric) {
   const Vec3 sum = weights.x * scene.normals[corners.x] + weights.y * scene.normals[corners.y] +
@@ -50,17 +29,6 @@ Vec3 shading_normal(const scene::Scene& scene, const glm::uvec3& corners, const 
   const float length = glm::length(sum);
   // Opposite vertex normals can cancel; the plane's own normal is then the only one there is.
   return length > 1e-6F ? sum / length : geometric;
-}
-
-void turn_around(SurfaceHit& hit) {
-  hit.is_front = false;
-  hit.point.geometric_normal = -hit.point.geometric_normal;
-  hit.point.shading_normal = -hit.point.shading_normal;
-}
-
-Vec3 ray_origin(const SurfacePoint& point, const Vec3& direction) {
-  const float side = glm::dot(direction, point.geometric_normal) >= 0.0F ? 1.0F : -1.0F;
-  return point.position + side * point.clearance * point.geometric_normal;
 }
 
 SurfaceHit surface_hit(const scene::Scene& scene, const Hit& hit, const Vec3& ray_direction) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "reference/trace/ray_caster.hpp"
@@ -43,5 +44,38 @@ void turn_around(SurfaceHit& hit);
 /// middle of the largest triangle that uses the vertex, and that triangle's plane is its geometric normal. A
 /// vertex no triangle uses is a free point.
 [[nodiscard]] std::vector<SurfacePoint> vertex_points(const scene::Scene& scene);
+
+// ---------------------------------------------------------------- bodies of what every ray needs
+// How far a computed point may lie from its triangle, and a computed hit distance from the true one.
+// A convex combination of three vertices carries at most 7 roundings (Pharr, Jakob & Humphreys, "Physically
+// Based Rendering", 4th ed., section 6.8): |error| <= gamma_7 (|b0 p0| + |b1 p1| + |b2 p2|) in each
+// component. The query rounds again, by a similar amount in the vertices' differences to the origin. Sixteen
+// units of relative error cover both; the bound scales with the coordinates alone, so a scene scaled by any
+// factor behaves the same.
+inline constexpr float kRelativeError = 8.0F * std::numeric_limits<float>::epsilon();
+
+// The largest component, not the one along the normal: on a plane through the origin that would be 0, while the query's
+// rounding is that of the other coordinates.
+inline float clearance(const Vec3& magnitude) {
+  return kRelativeError * max_component(magnitude) + std::numeric_limits<float>::min();
+}
+
+inline SurfacePoint point_on_plane(const Vec3 (&corners)[3], const Vec3& weights, const Vec3& normal) {
+  const Vec3 a = weights.x * corners[0];
+  const Vec3 b = weights.y * corners[1];
+  const Vec3 c = weights.z * corners[2];
+  return {a + b + c, normal, normal, clearance(glm::abs(a) + glm::abs(b) + glm::abs(c))};
+}
+
+inline void turn_around(SurfaceHit& hit) {
+  hit.is_front = false;
+  hit.point.geometric_normal = -hit.point.geometric_normal;
+  hit.point.shading_normal = -hit.point.shading_normal;
+}
+
+inline Vec3 ray_origin(const SurfacePoint& point, const Vec3& direction) {
+  const float side = glm::dot(direction, point.geometric_normal) >= 0.0F ? 1.0F : -1.0F;
+  return point.position + side * point.clearance * point.geometric_normal;
+}
 
 }  // namespace plumbline::trace

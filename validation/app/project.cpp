@@ -1,5 +1,5 @@
 // plumbline project: an environment as SH coefficients.
-#include "prt/sh/lighting.hpp"
+#include "prt/sh/convention.hpp"
 #include "validation/app/options.hpp"
 #include "validation/app/verbs.hpp"
 
@@ -11,6 +11,7 @@ struct Options {
   int bands = 5;
   std::string window = "none";
   double lambda = 0.01;
+  std::string convention = "plumbline";
   std::string output = "-";
   std::string json;
 };
@@ -26,8 +27,10 @@ sh::Window window_of(const std::string& name) {
 int run(const Options& options) {
   const bool is_twice = options.json.empty() || options.json == options.output;
   require_destinations({{"-o", options.output, ""}, {"--json", is_twice ? "" : options.json, ""}});
+  const sh::KnownConvention& convention = sh::known_convention(options.convention);
   const sh::ShRgb lighting = sh::project_radiance(load(options.light), options.bands);
-  const std::string text = sh::to_json(sh::windowed(lighting, window_of(options.window), options.lambda));
+  const sh::ShRgb seen = sh::windowed(lighting, window_of(options.window), options.lambda);
+  const std::string text = sh::to_json(seen, convention);
   write_output(options.output, text);
   if (!is_twice) write_output(options.json, text);
   return kSuccess;
@@ -48,6 +51,8 @@ void register_project(CLI::App& app, Action& chosen) {
       *verb, "--lambda", [options = options.get()](double lambda) { options->lambda = lambda; },
       "a number from 0", [](double lambda) { return lambda >= 0.0; },
       "strength of --window laplacian (default 0.01)");
+  verb->add_option("--convention", options->convention,
+                   "name of the convention to write (`plumbline conventions` lists them; default: ours)");
   add_output(*verb, options->output, "JSON file to write (default: standard output)");
   add_json(*verb, options->json, "the same JSON");
   verb->footer("Example: plumbline project builtin:two-lobes --bands 4 -o two-lobes.json");

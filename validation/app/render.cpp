@@ -29,6 +29,7 @@ struct Options {
   std::string bounces = "all";
   std::string size = "256x256";
   std::uint64_t seed = 0;
+  int randomisations = integrate::kRandomisations;
   std::string shard;  // empty: the whole image
   int threads = 0;
   std::string layers;
@@ -90,6 +91,7 @@ integrate::RenderSettings settings_of(const Options& options) {
   }
   settings.max_bounces = parse_bounces(options.bounces);
   settings.seed = options.seed;
+  settings.randomisations = options.randomisations;
   settings.threads = options.threads;
   if (!options.shard.empty()) settings.shard = parse_shard(options.shard);
   if (settings.shard.count > 1 && is_progressive) {
@@ -120,6 +122,8 @@ std::string reproducing_command(const Options& o, const integrate::RenderResult&
     command += fmt::format(" --spp {}", result.samples_per_pixel);
   }
   command += fmt::format(" --bounces {} --size {} --seed {}", o.bounces, o.size, o.seed);
+  if (o.randomisations != integrate::kRandomisations)
+    command += fmt::format(" --randomisations {}", o.randomisations);
   if (!o.layers.empty()) command += " --layers " + o.layers;
   return command;
 }
@@ -146,6 +150,7 @@ void set_attributes(image::LayeredImage& image, const Options& options, const in
                       {"plumbline.environmentLookup", options.light.lookup},
                       {"plumbline.camera", camera},
                       {"plumbline.seed", std::to_string(settings.seed)},
+                      {"plumbline.randomisations", std::to_string(settings.randomisations)},
                       {"plumbline.samplesPerPixel", std::to_string(result.samples_per_pixel)},
                       {"plumbline.bounces", bounces_text(settings.max_bounces)},
                       {"plumbline.command", reproducing_command(options, result)}};
@@ -177,6 +182,7 @@ void report(const Options& options, const integrate::RenderSettings& settings,
                             {"mean_radiance", number(result.mean_radiance)},
                             {"bounces", bounces_text(settings.max_bounces)},
                             {"seed", settings.seed},
+                            {"randomisations", settings.randomisations},
                             {"seconds", result.seconds},
                             {"stop", stop_text(result.stop)},
                             {"command", attributes.at("plumbline.command")}});
@@ -217,6 +223,11 @@ void register_render(CLI::App& app, Action& chosen) {
   add_size(*verb, options->size);
   add_camera_option(*verb, options->scene.camera);
   add_seed(*verb, options->seed);
+  verb->add_option("--randomisations", options->randomisations,
+                   "Independent point sequences a pixel, 2 to 32. Fewer are longer and converge faster; the "
+                   "standard error then "
+                   "rests on fewer degrees of freedom")
+      ->capture_default_str();
   verb->add_option("--shard", options->shard,
                    "render part i of N (i/N); `plumbline merge` puts the parts together");
   add_threads(*verb, options->threads);

@@ -3,15 +3,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <thread>
 
 #include "reference/base/atomic_file.hpp"
 #include "reference/base/error.hpp"
 #include "reference/scene/load.hpp"
+#include "validation/app/machine.hpp"
 #include "validation/app/verbs.hpp"
 #include "validation/checks/suite.hpp"
 #include "validation/report/report.hpp"
@@ -32,35 +29,6 @@ struct Options {
   std::string size = "384x288";
   checks::Budget budget;
 };
-
-std::string read_line_after(const char* file, const std::string& key) {
-  std::ifstream lines(file);
-  for (std::string line; std::getline(lines, line);) {
-    if (!line.starts_with(key)) continue;
-    const std::size_t value = line.find_first_not_of(" \t:=\"", key.size());
-    std::string text = value == std::string::npos ? "" : line.substr(value);
-    if (!text.empty() && text.back() == '"') text.pop_back();
-    return text;
-  }
-  return "unknown";
-}
-
-std::map<std::string, std::string> machine() {
-  return {{"cpu", read_line_after("/proc/cpuinfo", "model name")},
-          {"threads", std::to_string(std::thread::hardware_concurrency())},
-          {"memory", read_line_after("/proc/meminfo", "MemTotal")},
-          {"os", read_line_after("/etc/os-release", "PRETTY_NAME")},
-          {"compiler", __VERSION__}};
-}
-
-std::string now_utc() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm parts{};
-  ::gmtime_r(&now, &parts);
-  char text[32];
-  std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return text;
-}
 
 std::string reproducing_command(const Options& o) {
   std::string command = "plumbline validate";
@@ -133,16 +101,6 @@ report::Report start_report(const Options& options) {
   return report;
 }
 
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!std::filesystem::is_directory(folder)) {
-    throw InputError(fmt::format("{}: cannot make this folder: {}", folder.string(),
-                                 error ? error.message() : "it is a file"));
-  }
-  require_writable(folder / "report.html");
-}
-
 void print_summary(const report::Report& report, const std::filesystem::path& page) {
   for (const report::Headline& headline : report.headlines)
     fmt::print("{}: {}\n", headline.label, headline.value);
@@ -163,7 +121,7 @@ void print_summary(const report::Report& report, const std::filesystem::path& pa
 int run(const Options& options) {
   const checks::Suite suite = make_suite(options);
   const std::filesystem::path folder(options.output);
-  make_folder(folder);
+  make_folder(folder, "report.html");
   report::Report report = start_report(options);
   for (const checks::Family& family : checks::families()) {
     if (!is_chosen(options, family.name)) continue;

@@ -14,6 +14,10 @@ void register_relight(CLI::App& app, Action& chosen);
 void register_inspect(CLI::App& app, Action& chosen);
 void register_compare(CLI::App& app, Action& chosen);
 void register_validate(CLI::App& app, Action& chosen);
+void register_identify(CLI::App& app, Action& chosen);
+void register_conventions(CLI::App& app, Action& chosen);
+void register_conform(CLI::App& app, Action& chosen);
+void register_bench(CLI::App& app, Action& chosen);
 void register_scenes(CLI::App& app, Action& chosen);
 
 }  // namespace plumbline::app

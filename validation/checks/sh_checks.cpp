@@ -17,55 +17,6 @@ std::size_t index(int l, int m) {
   return static_cast<std::size_t>(l * (l + 1) + m);
 }
 
-/// Directions of no special position, the axes, and points close to the poles.
-std::vector<Vec3d> probe_directions() {
-  std::vector<Vec3d> result{{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
-  const double golden_angle = kPi * (3.0 - std::sqrt(5.0));
-  constexpr int kCount = 64;
-  for (int i = 0; i < kCount; ++i) {
-    const double z = 1.0 - (2.0 * i + 1.0) / kCount;
-    const double radius = std::sqrt((1.0 - z) * (1.0 + z));
-    result.emplace_back(radius * std::cos(golden_angle * i), radius * std::sin(golden_angle * i), z);
-  }
-  for (const double angle : {1e-1, 1e-3, 1e-6}) {
-    result.emplace_back(0.6 * std::sin(angle), 0.8 * std::sin(angle), std::cos(angle));
-    result.emplace_back(0.8 * std::sin(angle), -0.6 * std::sin(angle), -std::cos(angle));
-  }
-  return result;
-}
-
-/// The definition: y_lm = sqrt(2) K_lm P_l^m(cos theta) cos(m phi), with the Condon-Shortley sign in P.
-/// Column by column, P_m^m = (-1)^m (2m - 1)!! sin^m, K_lm by its ratio from row to row.
-std::vector<double> textbook_basis(int bands, const Vec3d& direction) {
-  using Long = long double;
-  const Long x = direction.x;
-  const Long y = direction.y;
-  const Long z = direction.z;
-  const Long sine = std::hypot(x, y);
-  const Long phi = std::atan2(y, x);
-  constexpr Long kFourPi = 4.0L * std::numbers::pi_v<Long>;
-  std::vector<double> values(static_cast<std::size_t>(bands * bands));
-  Long diagonal = std::sqrt(1.0L / kFourPi);  // K_mm P_m^m but for the factor sqrt(2m + 1)
-  for (int m = 0; m < bands; ++m) {
-    if (m > 0) diagonal *= -sine * std::sqrt((2.0L * m - 1.0L) / (2.0L * m));
-    Long previous = 0.0L;
-    Long current = diagonal;  // sqrt((l - m)!/(l + m)!) P_l^m / sqrt(4 pi)
-    for (int l = m; l < bands; ++l) {
-      if (l > m) {
-        const Long below = std::sqrt(static_cast<Long>((l - 1) * (l - 1) - m * m));
-        const Long next = ((2.0L * l - 1.0L) * z * current - below * previous) /
-                          std::sqrt(static_cast<Long>(l * l - m * m));
-        previous = current;
-        current = next;
-      }
-      const Long q = std::sqrt((2.0L * l + 1.0L) * (m > 0 ? 2.0L : 1.0L)) * current;
-      values[index(l, m)] = static_cast<double>(q * std::cos(m * phi));
-      if (m > 0) values[index(l, -m)] = static_cast<double>(q * std::sin(m * phi));
-    }
-  }
-  return values;
-}
-
 double legendre(int degree, double x) {
   double previous = 1.0;
   double current = x;
@@ -98,6 +49,54 @@ double white_error(const ProjectionUnderTest& project, const light::Environment&
 }
 
 }  // namespace
+
+std::vector<Vec3d> probe_directions() {
+  std::vector<Vec3d> result{{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
+  const double golden_angle = kPi * (3.0 - std::sqrt(5.0));
+  constexpr int kCount = 64;
+  for (int i = 0; i < kCount; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / kCount;
+    const double radius = std::sqrt((1.0 - z) * (1.0 + z));
+    result.emplace_back(radius * std::cos(golden_angle * i), radius * std::sin(golden_angle * i), z);
+  }
+  for (const double angle : {1e-1, 1e-3, 1e-6}) {
+    result.emplace_back(0.6 * std::sin(angle), 0.8 * std::sin(angle), std::cos(angle));
+    result.emplace_back(0.8 * std::sin(angle), -0.6 * std::sin(angle), -std::cos(angle));
+  }
+  return result;
+}
+
+// The definition: y_lm = sqrt(2) K_lm P_l^m(cos theta) cos(m phi), with the Condon-Shortley sign in P.
+// Column by column, P_m^m = (-1)^m (2m - 1)!! sin^m, K_lm by its ratio from row to row.
+std::vector<double> textbook_basis(int bands, const Vec3d& direction) {
+  using Long = long double;
+  const Long x = direction.x;
+  const Long y = direction.y;
+  const Long z = direction.z;
+  const Long sine = std::hypot(x, y);
+  const Long phi = std::atan2(y, x);
+  constexpr Long kFourPi = 4.0L * std::numbers::pi_v<Long>;
+  std::vector<double> values(static_cast<std::size_t>(bands * bands));
+  Long diagonal = std::sqrt(1.0L / kFourPi);  // K_mm P_m^m but for the factor sqrt(2m + 1)
+  for (int m = 0; m < bands; ++m) {
+    if (m > 0) diagonal *= -sine * std::sqrt((2.0L * m - 1.0L) / (2.0L * m));
+    Long previous = 0.0L;
+    Long current = diagonal;  // sqrt((l - m)!/(l + m)!) P_l^m / sqrt(4 pi)
+    for (int l = m; l < bands; ++l) {
+      if (l > m) {
+        const Long below = std::sqrt(static_cast<Long>((l - 1) * (l - 1) - m * m));
+        const Long next = ((2.0L * l - 1.0L) * z * current - below * previous) /
+                          std::sqrt(static_cast<Long>(l * l - m * m));
+        previous = current;
+        current = next;
+      }
+      const Long q = std::sqrt((2.0L * l + 1.0L) * (m > 0 ? 2.0L : 1.0L)) * current;
+      values[index(l, m)] = static_cast<double>(q * std::cos(m * phi));
+      if (m > 0) values[index(l, -m)] = static_cast<double>(q * std::sin(m * phi));
+    }
+  }
+  return values;
+}
 
 GramDeviation gram_deviation(const BasisUnderTest& basis, int bands) {
   const auto size = static_cast<std::size_t>(bands * bands);

@@ -17,6 +17,13 @@ using BasisUnderTest = std::function<std::vector<double>(const Vec3d& direction)
 using ProjectionUnderTest =
     std::function<std::vector<RgbD>(const light::Environment& environment, int bands)>;
 
+/// Directions of no special position, the axes, and points close to the poles.
+[[nodiscard]] std::vector<Vec3d> probe_directions();
+
+/// The definition of the basis (associated Legendre functions and the azimuth), in long double: the judge's truth,
+/// independent of prt/sh. Good to about 1e-16 bands for up to 100 bands.
+[[nodiscard]] std::vector<double> textbook_basis(int bands, const Vec3d& direction);
+
 struct GramDeviation {
   double value = 0.0;  // max |G - I|
   int row = 0;         // where: coefficient indices, row >= column

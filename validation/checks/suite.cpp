@@ -9,6 +9,7 @@ const std::vector<Family>& families() {
       {"transfer", "transfer vectors against closed forms", check_transfer},
       {"furnace", "white furnace on each scene", check_furnace},
       {"images", "PRT images against path-traced ones", check_images},
+      {"exponential", "products, exponentials and logarithms, accumulated blockers", check_exponential},
   };
   return all;
 }

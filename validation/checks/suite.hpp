@@ -12,6 +12,10 @@ namespace plumbline::checks {
 /// The basis itself: orthonormality (Gram matrix), signs and order, the addition theorem, the clamped cosine.
 void check_basis(const Suite& suite, report::Report& report);
 
+/// Products, exponentials and logarithms of coefficients: against quadrature and closed forms, and which exponential to use for the
+/// log visibility of spheres.
+void check_exponential(const Suite& suite, report::Report& report);
+
 /// Each environment's coefficients: against Monte Carlo with the reference's light sampling, Bessel's inequality, convergence with bands.
 void check_projection(const Suite& suite, report::Report& report);
 

@@ -1,12 +1,12 @@
-# cmake -DINPUT=file -DFUNCTION=name -DOUTPUT=out.cpp -P embed.cmake
-# Writes a C++ file in which plumbline::report::assets::FUNCTION() returns the bytes of INPUT.
+# cmake -DINPUT=file -DNAMESPACE=name -DHEADER=path -DFUNCTION=name -DOUTPUT=out.cpp -P embed.cmake
+# Writes a C++ file in which NAMESPACE::FUNCTION(), declared in HEADER, returns the bytes of INPUT.
 file(READ "${INPUT}" bytes HEX)
 string(LENGTH "${bytes}" digits)
 math(EXPR size "${digits} / 2")
 string(REGEX REPLACE "(................................................................)" "\\1\n" bytes "${bytes}")
 string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${bytes}")
 file(WRITE "${OUTPUT}" "// Generated from ${INPUT}.
-#include \"validation/report/assets.hpp\"
+#include \"${HEADER}\"
 
 namespace {
 constexpr unsigned char kBytes[] = {
@@ -14,9 +14,9 @@ ${bytes}
 0};
 }  // namespace
 
-namespace plumbline::report::assets {
+namespace ${NAMESPACE} {
 std::string_view ${FUNCTION}() {
   return {reinterpret_cast<const char*>(kBytes), ${size}U};
 }
-}  // namespace plumbline::report::assets
+}  // namespace ${NAMESPACE}
 ")

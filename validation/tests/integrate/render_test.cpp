@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -235,6 +236,80 @@ TEST(Render, TargetErrorIsReachedAndSaid) {
   EXPECT_LE(std::abs(std::sqrt(variance / n) / (mean / n) - result.relative_error), 1e-5);
 }
 
+// Samples go where the noise is: to the box, not to the black around it.
+TEST(Render, TargetErrorSpendsSamplesWhereTheNoiseIs) {
+  RenderSettings settings = small(8);
+  settings.target_error = 0.01;
+  const RenderResult result = render(cornell(), cornell().scene.cameras[0], settings);
+  const std::vector<float>& samples = result.image.channels.at("samples");
+  const auto [fewest, most] = std::minmax_element(samples.begin(), samples.end());
+  EXPECT_GE(*most, 2.0F * *fewest);
+  EXPECT_GE(*fewest, 2.0F);
+}
+
+// Means over 40 seeds of images made towards a target against one long even run: were the pilot part of the image, or a
+// pixel's own noise to decide when it stops, dark pixels would be left early and the mean would be low.
+TEST(Render, TargetErrorLeavesTheMeanUnbiased) {
+  const World& world = cornell();
+  RenderSettings settings = small(9);
+  settings.width = settings.height = 12;
+  settings.samples_per_pixel = 4096;
+  const RenderResult truth = render(world, world.scene.cameras[0], settings);
+  settings.target_error = 0.08;
+  std::vector<double> means;
+  for (std::uint64_t seed = 100; seed < 140; ++seed) {
+    settings.seed = seed;
+    means.push_back(render(world, world.scene.cameras[0], settings).mean_radiance);
+  }
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const double mean : means) sum += mean;
+  const double mean = sum / static_cast<double>(means.size());
+  for (const double value : means) squares += (value - mean) * (value - mean);
+  const double n = static_cast<double>(means.size());
+  const double error =
+      std::hypot(std::sqrt(squares / (n * (n - 1.0))), truth.relative_error * truth.mean_radiance / 12.0);
+  EXPECT_LE(std::abs(mean - truth.mean_radiance), 4.0 * error);
+  EXPECT_LE(4.0 * error, 0.02 * mean) << "two per cent would not show";
+}
+
+// Two randomisations leave one degree of freedom a pixel; over 24 seeds the claimed variance and the spread from seed to seed
+// must be the same. Each pixel's ratio is known to 0.3 (23 degrees of freedom), 576 of them to 0.0125, a few times that
+// for the heavy tails at the lamp's edge: 0.8 and 1.25 are about five deviations. An error 1.5 times too small gives 2.25.
+TEST(Render, FewRandomisationsGiveAnHonestErrorToo) {
+  const World& world = cornell();
+  RenderSettings settings = small(0);
+  settings.width = settings.height = 24;
+  settings.samples_per_pixel = 64;
+  settings.randomisations = 2;
+  constexpr int kSeeds = 24;
+  const auto pixels = static_cast<std::size_t>(settings.width * settings.height);
+  std::vector<double> sums(pixels);
+  std::vector<double> squares(pixels);
+  std::vector<double> claimed(pixels);
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    settings.seed = static_cast<std::uint64_t>(seed);
+    const RenderResult result = render(world, world.scene.cameras[0], settings);
+    for (std::size_t p = 0; p < pixels; ++p) {
+      const double value = static_cast<double>(result.image.channels.at("G")[p]);
+      const double error = static_cast<double>(result.image.channels.at("stderr.G")[p]);
+      sums[p] += value;
+      squares[p] += value * value;
+      claimed[p] += error * error / kSeeds;
+    }
+  }
+  double spread_sum = 0.0;
+  double claimed_sum = 0.0;
+  for (std::size_t p = 0; p < pixels; ++p) {
+    const double mean = sums[p] / kSeeds;
+    const double weight = 1.0 / (mean * mean + 0.01);
+    spread_sum += weight * (squares[p] - kSeeds * mean * mean) / (kSeeds - 1);
+    claimed_sum += weight * claimed[p];
+  }
+  EXPECT_GE(spread_sum / claimed_sum, 0.8);
+  EXPECT_LE(spread_sum / claimed_sum, 1.25);
+}
+
 // Whatever time there is, and so whatever the last round's size, the error that is reported is known.
 TEST(Render, EveryTimeLimitGivesAKnownError) {
   RenderSettings settings = small(6);
@@ -304,6 +379,8 @@ TEST(Render, RefusesAbsurdSettings) {
   refuses([](RenderSettings& s) { s.max_bounces = -1; });
   refuses([](RenderSettings& s) { s.target_error = NAN; });
   refuses([](RenderSettings& s) { s.max_seconds = -1.0; });
+  refuses([](RenderSettings& s) { s.randomisations = 1; });
+  refuses([](RenderSettings& s) { s.randomisations = 33; });
   refuses([](RenderSettings& s) { s.shard = {2, 2}; });
   refuses([](RenderSettings& s) {
     s.shard = {0, 2};

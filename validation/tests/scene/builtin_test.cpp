@@ -168,6 +168,17 @@ TEST(BuiltinScenes, UnknownNameListsTheNames) {
   }
 }
 
+TEST(BuiltinScenes, TerrainHasAsManyTrianglesAsAskedAndTheSameSurface) {
+  const Scene coarse = make_builtin_scene("terrain:8");
+  const Scene fine = make_builtin_scene("terrain:16");
+  EXPECT_EQ(coarse.triangles.size(), 128U);
+  EXPECT_EQ(fine.triangles.size(), 512U);
+  EXPECT_EQ(coarse.name, "builtin:terrain:8");
+  EXPECT_EQ(coarse.positions[4 * 9 + 4], fine.positions[8 * 17 + 8]);
+  for (const char* name : {"terrain:", "terrain:7", "terrain:8193", "terrain:1x", "terrain:-8"})
+    EXPECT_THROW((void)make_builtin_scene(name), InputError) << name;
+}
+
 TEST(BuiltinScenes, NormalsAreUnitAndAgreeWithTheFronts) {
   for (const BuiltinInfo& info : builtin_scenes()) {
     EXPECT_EQ(wrong_normals(make_builtin_scene(info.name)), 0U) << info.name;

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <boost/math/special_functions/spherical_harmonic.hpp>
+#include <functional>
 
+#include "prt/sh/quadrature.hpp"
 #include "reference/base/error.hpp"
 #include "validation/tests/sh/oracle.hpp"
 
@@ -39,12 +41,14 @@ TEST(ShBasis, IsAccurateInDouble) {
   EXPECT_LE(largest_error<double>(6, 1000), 3e-15);
   EXPECT_LE(largest_error<double>(20, 200), 4e-14);
   EXPECT_LE(largest_error<double>(64, 20), 2e-13);
+  EXPECT_LE(largest_error<double>(200, 4), 2e-13);
 }
 TEST(ShBasis, IsAccurateInFloat) {
   EXPECT_LE(largest_error<float>(5, 1000), 7e-7);
   EXPECT_LE(largest_error<float>(6, 1000), 7e-7);
   EXPECT_LE(largest_error<float>(10, 1000), 2.5e-6);
   EXPECT_LE(largest_error<float>(20, 200), 1e-5);
+  EXPECT_LE(largest_error<float>(64, 20), 3e-5);
 }
 
 TEST(ShBasis, AgreesWithBoost) {
@@ -122,27 +126,105 @@ TEST(ShBasis, SumOfSquaresIsTheSameEverywhere) {
   }
 }
 
-TEST(ShBasis, KeepsDigitsAtThePolesForPositiveM) {
-  constexpr int kBands = 20;
-  for (const double angle : {1e-1, 1e-3, 1e-6, 1e-8}) {
-    for (const double sign : {1.0, -1.0}) {
-      const Vec3d d(0.6 * std::sin(angle), 0.8 * std::sin(angle), sign * std::cos(angle));
-      const std::vector<double> values = evaluate_basis(kBands, d);
-      const std::vector<sh_test::Quad> truth = sh_test::evaluate(kBands, d);
-      for (int l = 0; l < kBands; ++l) {
-        for (int m = 1; m <= l; ++m) {
-          const auto plus = static_cast<std::size_t>(index(l, m));
-          const auto minus = static_cast<std::size_t>(index(l, -m));
-          const double size = std::hypot(static_cast<double>(truth[plus]), static_cast<double>(truth[minus]));
-          if (size < 1e-290) continue;
-          const double error = std::hypot(static_cast<double>(sh_test::Quad(values[plus]) - truth[plus]),
-                                          static_cast<double>(sh_test::Quad(values[minus]) - truth[minus]));
-          // Relative to the pair; a nearby zero of P_l^m at 0.1 rad costs one digit.
-          EXPECT_LE(error, 1e-12 * size) << "l=" << l << " m=" << m << " angle=" << angle;
+/// Largest error of a +-m pair over its size, near both poles, of what `evaluate` gives for a direction.
+template <class Real>
+double largest_pair_error(int bands, double largest_angle,
+                          const std::function<std::vector<Real>(const Vec3d&)>& evaluate) {
+  double result = 0.0;
+  for (const Vec3d& exact : sh_test::polar_directions(largest_angle)) {
+    const Vec3d d(static_cast<Real>(exact.x), static_cast<Real>(exact.y), static_cast<Real>(exact.z));
+    result = worse(result, sh_test::pair_error<Real>(bands, d, evaluate(d)));
+  }
+  return result;
+}
+
+template <class Real>
+std::function<std::vector<Real>(const Vec3d&)> basis_at(int bands) {
+  return [basis = Basis<Real>(bands)](const Vec3d& d) {
+    std::vector<Real> values(static_cast<std::size_t>(basis.coefficient_count()));
+    basis.evaluate(static_cast<Real>(d.x), static_cast<Real>(d.y), static_cast<Real>(d.z), values);
+    return values;
+  };
+}
+
+TEST(ShBasis, PairsKeepTheirDigitsAtThePoles) {
+  EXPECT_LE(largest_pair_error<double>(5, 0.1, basis_at<double>(5)), 3e-14);
+  EXPECT_LE(largest_pair_error<double>(10, 0.1, basis_at<double>(10)), 3e-14);
+  EXPECT_LE(largest_pair_error<double>(20, 0.1, basis_at<double>(20)), 3e-14);
+  EXPECT_LE(largest_pair_error<float>(5, 0.1, basis_at<float>(5)), 1e-6);
+  EXPECT_LE(largest_pair_error<float>(10, 0.1, basis_at<float>(10)), 1e-6);
+}
+// At 0.1 rad the first zeros of 25 bands and more pass through; further in there are none up to 200.
+TEST(ShBasis, PairsKeepTheirDigitsAtThePolesTo200Bands) {
+  EXPECT_LE(largest_pair_error<double>(200, 0.01, basis_at<double>(200)), 3e-14);
+}
+
+/// The textbook's q_l = a z q_(l-1) - b q_(l-2), which takes z for what it is.
+std::vector<double> evaluate_by_powers_of_z(int bands, const Vec3d& d) {
+  std::vector<double> values(static_cast<std::size_t>(bands * bands));
+  double start = std::sqrt(1.0 / (4.0 * kPi));
+  double re = 1.0;
+  double im = 0.0;
+  for (int m = 0; m < bands; ++m) {
+    if (m > 0) {
+      const double next = d.y * im - d.x * re;
+      im = -d.x * im - d.y * re;
+      re = next;
+      start *= std::sqrt((2.0 * m + 1.0) / (2.0 * m)) * (m == 1 ? std::sqrt(2.0) : 1.0);
+    }
+    double previous = 0.0;
+    double q = start;
+    for (int l = m; l < bands; ++l) {
+      if (l > m) {
+        const double gap = static_cast<double>(l) * l - static_cast<double>(m) * m;
+        const double below = (l - 1.0) * (l - 1.0) - static_cast<double>(m) * m;
+        const double b = l == m + 1 ? 0.0 : std::sqrt((2.0 * l + 1.0) / (2.0 * l - 3.0) * below / gap);
+        const double next = std::sqrt((4.0 * l * l - 1.0) / gap) * d.z * q - b * previous;
+        previous = q;
+        q = next;
+      }
+      values[static_cast<std::size_t>(index(l, m))] = q * re;
+      if (m > 0) values[static_cast<std::size_t>(index(l, -m))] = q * im;
+    }
+  }
+  return values;
+}
+TEST(ShBasis, ThePairCheckSeesTheRoundingOfZ) {
+  const auto faulty = [](const Vec3d& d) { return evaluate_by_powers_of_z(200, d); };
+  EXPECT_GT(largest_pair_error<double>(200, 0.01, faulty), 3e-13);
+}
+
+/// Largest deviation from the identity of the Gram matrix of the functions m >= 0 of each m, by Gauss nodes in z; the
+/// azimuth integrates to pi (2 pi at m = 0).
+double polar_gram_deviation(int bands, const std::function<std::vector<double>(const Vec3d&)>& basis) {
+  const GaussLegendre rule = gauss_legendre(bands);
+  std::vector<std::vector<double>> rows;
+  for (const double z : rule.nodes) rows.push_back(basis(Vec3d(std::sqrt((1.0 - z) * (1.0 + z)), 0.0, z)));
+  double result = 0.0;
+  for (int m = 0; m < bands; ++m) {
+    for (int l = m; l < bands; ++l) {
+      for (int k = m; k <= l; ++k) {
+        double sum = 0.0;
+        for (std::size_t j = 0; j < rows.size(); ++j) {
+          sum += rule.weights[j] * rows[j][static_cast<std::size_t>(index(l, m))] *
+                 rows[j][static_cast<std::size_t>(index(k, m))];
         }
+        result = worse(result, std::abs((m > 0 ? kPi : 2.0 * kPi) * sum - (l == k ? 1.0 : 0.0)));
       }
     }
   }
+  return result;
+}
+TEST(ShBasis, IsOrthonormalTo200Bands) {
+  EXPECT_LE(polar_gram_deviation(200, basis_at<double>(200)), 1e-12);
+}
+TEST(ShBasis, TheGramMatrixSeesAWrongDigit) {
+  const auto faulty = [basis = basis_at<double>(20)](const Vec3d& d) {
+    std::vector<double> values = basis(d);
+    values[static_cast<std::size_t>(index(19, 7))] *= 1.0 + 2e-12;
+    return values;
+  };
+  EXPECT_GT(polar_gram_deviation(20, faulty), 1e-12);
 }
 
 template <class Real>

@@ -83,4 +83,44 @@ inline std::vector<Vec3d> directions(int count, unsigned seed) {
   return result;
 }
 
+/// 0.1, 0.01 … 1e-8 rad from either pole, as far as that is within `largest_angle`, at azimuths of no special kind.
+inline std::vector<Vec3d> polar_directions(double largest_angle) {
+  std::vector<Vec3d> result;
+  for (int k = 1; k <= 8; ++k) {
+    const double angle = std::pow(10.0, -k);
+    if (angle > largest_angle * 1.001) continue;
+    for (const double azimuth : {0.3, 0.9272952180016122, 2.0, 4.5}) {
+      const Vec3d d(std::cos(azimuth) * std::sin(angle), std::sin(azimuth) * std::sin(angle),
+                    std::cos(angle));
+      result.push_back(d);
+      result.emplace_back(d.x, d.y, -d.z);
+    }
+  }
+  return result;
+}
+
+/// Largest |error| of a +-m pair (a single value at m = 0) over the pair's size, of `values` at `direction`. Pairs
+/// that Real cannot hold with all its digits are left out. NaN stays.
+template <class Real>
+double pair_error(int bands, const Vec3d& direction, const std::vector<Real>& values) {
+  const double smallest = sizeof(Real) == sizeof(float) ? 1e-30 : 1e-290;
+  const std::vector<Quad> truth = evaluate(bands, direction);
+  double result = 0.0;
+  for (int l = 0; l < bands; ++l) {
+    for (int m = 0; m <= l; ++m) {
+      const auto plus = static_cast<std::size_t>(l * (l + 1) + m);
+      const auto minus = static_cast<std::size_t>(l * (l + 1) - m);
+      const double other = m > 0 ? static_cast<double>(truth[minus]) : 0.0;
+      const double size = std::hypot(static_cast<double>(truth[plus]), other);
+      if (size < smallest) continue;
+      const double error = static_cast<double>(Quad(values[plus]) - truth[plus]);
+      const double other_error = m > 0 ? static_cast<double>(Quad(values[minus]) - truth[minus]) : 0.0;
+      const double relative = std::hypot(error, other_error) / size;
+      if (!(relative <= result)) result = relative;
+      if (std::isnan(result)) return result;
+    }
+  }
+  return result;
+}
+
 }  // namespace plumbline::sh_test
