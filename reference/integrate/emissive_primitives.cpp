@@ -93,9 +93,22 @@ double primitive_pdf(const scene::Scene& scene, std::uint32_t surface, const tra
   return light::solid_angle_pdf(1.0 / area_of(scene, surface), length, cosine);
 }
 
-double primitive_weight(const scene::Scene& scene, std::uint32_t surface) {
-  const double brightness = max_component(scene::material_of(scene, surface).emission);
-  return area_of(scene, surface) * brightness;
+LightBounds primitive_bounds(const scene::Scene& scene, std::uint32_t surface) {
+  const scene::Material& material = scene::material_of(scene, surface);
+  const double brightness = max_component(material.emission);
+  if (const scene::Sphere* sphere = sphere_of(scene, surface)) {
+    const scene::Extent box = scene::extent(*sphere);
+    const Vec3d any_axis(0.0, 1.0, 0.0);
+    return {box.low, box.high, any_axis, -1.0, false, 0.25 * scene::area(*sphere) * brightness};
+  }
+  const scene::Disc& disc = disc_of(scene, surface);
+  const scene::Extent box = scene::extent(disc);
+  return {box.low,
+          box.high,
+          glm::normalize(Vec3d(disc.normal)),
+          1.0,
+          material.is_double_sided,
+          scene::area(disc) * brightness};
 }
 
 }  // namespace plumbline::integrate

@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "reference/integrate/emitters.hpp"
+#include "reference/integrate/emitter_sample.hpp"
+#include "reference/integrate/light_tree.hpp"
 #include "reference/scene/scene.hpp"
 #include "reference/trace/surface_point.hpp"
 
@@ -23,7 +24,8 @@ namespace plumbline::integrate {
 [[nodiscard]] double primitive_pdf(const scene::Scene& scene, std::uint32_t surface,
                                    const trace::SurfacePoint& point, float distance, const Vec3& direction);
 
-/// Area x largest emission component, by which lights are chosen.
-[[nodiscard]] double primitive_weight(const scene::Scene& scene, std::uint32_t surface);
+/// What a light tree knows of it; strength 0 where it does not emit. Of spheres the strength is that of their mean shadow,
+/// a quarter of the area.
+[[nodiscard]] LightBounds primitive_bounds(const scene::Scene& scene, std::uint32_t surface);
 
 }  // namespace plumbline::integrate

@@ -27,12 +27,9 @@ bool is_mutually_visible(const World& world, const trace::SurfacePoint& a, const
   return !world.caster.is_occluded({origin, segment / length, length});
 }
 
-double emitter_pdf(const World& world, const Meeting& meeting, const Vec3& direction) {
-  if (meeting.triangle >= world.scene.triangles.size()) {
-    return world.emitters.primitive_pdf(meeting.triangle, meeting.point, meeting.distance, direction);
-  }
-  const float cos_emitter = -glm::dot(meeting.point.geometric_normal, direction);
-  return world.emitters.pdf(meeting.triangle, meeting.distance, cos_emitter);
+double emitter_pdf(const World& world, const Receiver& receiver, const Meeting& meeting,
+                   const Vec3& direction) {
+  return world.emitters.pdf(receiver, meeting.triangle, meeting.point, meeting.distance, direction);
 }
 
 }  // namespace plumbline::integrate

@@ -27,8 +27,9 @@ struct Meeting {
 [[nodiscard]] bool is_mutually_visible(const World& world, const trace::SurfacePoint& a,
                                        const trace::SurfacePoint& b);
 
-/// Density with which EmitterTable::sample would have drawn what a ray along `direction` met.
-[[nodiscard]] double emitter_pdf(const World& world, const Meeting& meeting, const Vec3& direction);
+/// Density with which EmitterTable::sample would have drawn for the receiver what its ray along `direction` met.
+[[nodiscard]] double emitter_pdf(const World& world, const Receiver& receiver, const Meeting& meeting,
+                                 const Vec3& direction);
 
 /// Weight of a sample drawn with density `own` when it could also have been drawn with density `other`
 /// (Veach & Guibas 1995, beta = 2).

@@ -20,6 +20,11 @@ float received_cosine(const trace::SurfacePoint& point, const Vec3& direction) {
   return std::max(0.0F, glm::dot(point.shading_normal, direction));
 }
 
+/// What the lights are chosen for: they count by the cosine with the shading normal.
+Receiver receiver_at(const trace::SurfacePoint& point) {
+  return {point.position, point.shading_normal};
+}
+
 /// Samples of the lights and directions followed at the first vertex: its light is most of the noise of an image, and the
 /// camera ray is paid already. Powers of two.
 constexpr std::uint32_t kSkySplits = 4;
@@ -100,9 +105,9 @@ struct Counts {
   std::uint32_t direction = 1;
 };
 
-RgbD emitters_by_light(const World& world, const trace::SurfacePoint& point, const Counts& counts, float pick,
-                       const Vec2& u) {
-  const std::optional<EmitterSample> sample = world.emitters.sample(point.position, pick, u);
+RgbD emitters_by_light(const World& world, const trace::SurfacePoint& point, const Counts& counts,
+                       const Vec2& pick, const Vec2& u) {
+  const std::optional<EmitterSample> sample = world.emitters.sample(receiver_at(point), pick, u);
   if (!sample) return RgbD(0.0);
   const double cosine = received_cosine(point, sample->direction);
   if (!(cosine > 0.0)) return RgbD(0.0);
@@ -150,7 +155,7 @@ RgbD direct_by_light(const World& world, const trace::SurfacePoint& point, const
   if (!world.emitters.is_empty()) {
     RgbD emitters(0.0);
     for (Draw draw = first; draw.split < first.split + counts.emitter; ++draw.split) {
-      const float pick = draw.light(sampler).x;
+      const Vec2 pick = draw.light(sampler);
       emitters += emitters_by_light(world, point, counts, pick, draw.emitter(sampler));
     }
     sum += emitters / static_cast<double>(counts.emitter);
@@ -165,12 +170,11 @@ RgbD sky_by_direction(const World& world, const Vec3& direction) {
   return RgbD(light::radiance(world.environment, direction)) * kPi;
 }
 
-RgbD emitter_by_direction(const World& world, const Meeting& meeting, const Counts& counts,
-                          const Vec3& direction, double pdf) {
+RgbD emitter_by_direction(const World& world, const trace::SurfacePoint& point, const Meeting& meeting,
+                          const Counts& counts, const Vec3& direction, double pdf) {
   if (is_black(meeting.emission)) return RgbD(0.0);
-  return RgbD(meeting.emission) *
-         (kPi *
-          power_heuristic(counts.direction * pdf, counts.emitter * emitter_pdf(world, meeting, direction)));
+  const double by_light = emitter_pdf(world, receiver_at(point), meeting, direction);
+  return RgbD(meeting.emission) * (kPi * power_heuristic(counts.direction * pdf, counts.emitter * by_light));
 }
 
 /// Probability to go on. The first bounce always does: it carries most of the indirect light, and ending it
@@ -227,7 +231,7 @@ bool step(const World& world, int max_bounces, double share, Sampler& sampler, B
     return false;
   }
   add(terms, walk.bounce,
-      weight * emitter_by_direction(world, *meeting, walk.counts, direction, cosine * kInvPi));
+      weight * emitter_by_direction(world, walk.point, *meeting, walk.counts, direction, cosine * kInvPi));
   if (is_last) return false;
 
   // 4. On to the next vertex: (albedo / pi) E cos / pdf = albedo E, then Russian roulette.

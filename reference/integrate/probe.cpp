@@ -69,8 +69,9 @@ Arrival sky_by_light(const World& world, const trace::SurfacePoint& point, const
   return {sample->direction, RgbD(sample->radiance) * (weight / sample->pdf)};
 }
 
-Arrival emitter_by_light(const World& world, const trace::SurfacePoint& point, float pick, const Vec2& u) {
-  const std::optional<EmitterSample> sample = world.emitters.sample(point.position, pick, u);
+Arrival emitter_by_light(const World& world, const trace::SurfacePoint& point, const Vec2& pick,
+                         const Vec2& u) {
+  const std::optional<EmitterSample> sample = world.emitters.sample({point.position, {}}, pick, u);
   if (!sample || !is_mutually_visible(world, point, sample->on_emitter)) return {};
   const double weight = power_heuristic(sample->pdf, kUniformPdf);
   return {sample->direction, RgbD(sample->radiance) * (weight / sample->pdf)};
@@ -102,8 +103,8 @@ RgbD light_by_direction(const World& world, const trace::SurfacePoint& point, co
   if (!meeting) return sky_by_direction(world, direction);
   RgbD radiance = reflected(world, meeting->point, meeting->albedo, max_bounces, sampler);
   if (!is_black(meeting->emission)) {
-    radiance +=
-        RgbD(meeting->emission) * power_heuristic(kUniformPdf, emitter_pdf(world, *meeting, direction));
+    radiance += RgbD(meeting->emission) *
+                power_heuristic(kUniformPdf, emitter_pdf(world, {point.position, {}}, *meeting, direction));
   }
   return radiance / kUniformPdf;
 }
@@ -114,7 +115,7 @@ void add_sample(const World& world, const trace::SurfacePoint& point, int max_bo
   const Vec3 direction = uniform_direction(sampler.next_2d());
   if (world.is_sky_sampled && !world.is_sky_black) add(sky_by_light(world, point, sampler.next_2d()));
   if (!world.emitters.is_empty()) {
-    const float pick = sampler.next_1d();
+    const Vec2 pick = sampler.next_2d();
     add(emitter_by_light(world, point, pick, sampler.next_2d()));
   }
   add({direction, light_by_direction(world, point, direction, max_bounces, sampler)});
