@@ -36,6 +36,7 @@ struct Family {
   std::string name;
   std::string description;
   void (*run)(const Suite&, report::Report&);
+  bool is_only_when_named = false;  // minutes of work that have nothing to do with the scenes given
 };
 /// All, in the order they run.
 [[nodiscard]] const std::vector<Family>& families();

@@ -49,20 +49,6 @@ std::function<Estimator()> uniform_moment(const Function& f) {
   };
 }
 
-/// Barycentric coordinate of the points drawn on a triangle light: mean 1/3, mean square 1/6 (variance 1/18).
-std::function<Estimator()> triangle_moment(int power) {
-  return [power] {
-    auto scene = std::make_shared<scene::Scene>();
-    add_triangle(*scene, {0, 2, 0}, {3, 2, 0}, {0, 2, 1}, add_grey(*scene, 0.0, 1.0, true));
-    auto table = std::make_shared<const integrate::EmitterTable>(*scene);
-    return plain_mean([scene, table, power](double u, double v) {
-      const auto sample = table->sample(Vec3(1.0F, 0.0F, 0.0F), 0.0F, pair(u, v));
-      return sample ? std::pow(static_cast<double>(sample->on_emitter.position.x) / 3.0, power)
-                    : std::nan("");
-    });
-  };
-}
-
 void add_moment_cases(std::vector<TruthCase>& cases) {
   const char* const cosine = "density cos/pi: E[c] = 2/3, E[c^2] = 1/2, E[x^2] = 1/4";
   const auto height = [](const Vec3d& w) { return glm::dot(w, kNormal); };
@@ -78,9 +64,6 @@ void add_moment_cases(std::vector<TruthCase>& cases) {
                         uniform_moment([=](const Vec3d& w) { return height(w) * height(w); })));
   cases.push_back(named("Q1_UniformProduct", uniform, truth::kUniformMeanProduct,
                         uniform_moment([](const Vec3d& w) { return w.x * w.x * w.y * w.y; })));
-  const char* const triangle = "uniform on a triangle: mean 1/3, mean square 1/6";
-  cases.push_back(named("Q1_TriangleMean", triangle, 1.0 / 3.0, triangle_moment(1)));
-  cases.push_back(named("Q1_TriangleSquare", triangle, 1.0 / 6.0, triangle_moment(2)));
 }
 
 // ---------------------------------------------------------------- Q2: densities integrate to 1

@@ -13,9 +13,16 @@
 namespace plumbline::checks {
 namespace {
 
+// All but the two whose spread asks for minutes: late bounces of a furnace on their own. `validate --checks truths` has them.
 const std::vector<TruthCase>& cases() {
-  static const std::vector<TruthCase> all = truth_cases();
-  return all;
+  static const std::vector<TruthCase> quick = [] {
+    std::vector<TruthCase> all = truth_cases();
+    std::erase_if(all, [](const TruthCase& one) {
+      return one.name == "M16_FurnaceBounce8Alone" || one.name == "M16_FurnaceBounce4Alone";
+    });
+    return all;
+  }();
+  return quick;
 }
 
 class ClosedForm : public testing::TestWithParam<std::size_t> {};
