@@ -94,7 +94,8 @@ inline std::uint64_t mix(std::uint64_t value) {
   return value ^ (value >> 31U);
 }
 
-inline Sampler::Sampler(std::uint64_t seed, std::uint64_t stream, std::uint32_t randomisation, std::uint32_t index)
+inline Sampler::Sampler(std::uint64_t seed, std::uint64_t stream, std::uint32_t randomisation,
+                        std::uint32_t index)
     : key_(mix(mix(mix(seed + 0x9E3779B97F4A7C15ULL) ^ stream) + randomisation)), index_(index) {}
 
 inline Sampler::Pair Sampler::next_pair() {
@@ -107,11 +108,13 @@ inline Sampler::Pair Sampler::next_pair() {
 
 inline Vec2 Sampler::point(const Pair& pair, std::uint32_t split, std::uint32_t splits) const {
   // The shuffled index, still least significant bit first after the two reversals of the scramble cancel.
-  const std::uint32_t index =
-      sampler_detail::reverse_bits(sampler_detail::permute_from_below(sampler_detail::reverse_bits(index_ * splits + split), pair.shuffle));
+  const std::uint32_t index = sampler_detail::reverse_bits(sampler_detail::permute_from_below(
+      sampler_detail::reverse_bits(index_ * splits + split), pair.shuffle));
   const std::uint32_t x = sampler_detail::permute_from_below(index, pair.scramble_x);
-  const std::uint32_t y = sampler_detail::permute_from_below(sampler_detail::sobol_second(index), pair.scramble_y);
-  return {sampler_detail::to_unit(sampler_detail::reverse_bits(x)), sampler_detail::to_unit(sampler_detail::reverse_bits(y))};
+  const std::uint32_t y =
+      sampler_detail::permute_from_below(sampler_detail::sobol_second(index), pair.scramble_y);
+  return {sampler_detail::to_unit(sampler_detail::reverse_bits(x)),
+          sampler_detail::to_unit(sampler_detail::reverse_bits(y))};
 }
 
 inline Vec2 Sampler::next_2d() {
@@ -125,7 +128,8 @@ inline float Sampler::next_1d() {
 inline Vec2 Sampler::independent_2d() {
   const std::uint64_t bits =
       mix(mix(key_ + 0x9E3779B97F4A7C15ULL * ++dimension_) + 0xD1342543DE82EF95ULL * index_);
-  return {sampler_detail::to_unit(static_cast<std::uint32_t>(bits)), sampler_detail::to_unit(static_cast<std::uint32_t>(bits >> 32U))};
+  return {sampler_detail::to_unit(static_cast<std::uint32_t>(bits)),
+          sampler_detail::to_unit(static_cast<std::uint32_t>(bits >> 32U))};
 }
 
 inline float Sampler::independent_1d() {

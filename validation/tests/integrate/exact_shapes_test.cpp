@@ -83,7 +83,8 @@ TEST(ExactShapes, M01FurnaceInASphereAtEveryBounceCount) {
   };
   for (int bounces = 0; bounces <= 8; ++bounces) {
     SCOPED_TRACE(bounces);
-    expect_agrees(exit_radiance(bounces, bounces < 4 ? 1 << 15 : 1 << 17), truth::enclosure_radiance(1.0, 0.8, bounces));
+    expect_agrees(exit_radiance(bounces, bounces < 4 ? 1 << 15 : 1 << 17),
+                  truth::enclosure_radiance(1.0, 0.8, bounces));
   }
   expect_agrees(exit_radiance(integrate::kAllBounces, 1 << 18), 5.0);
 }

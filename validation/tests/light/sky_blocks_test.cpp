@@ -35,7 +35,8 @@ Grid make_grid(int rows, int columns) {
   std::vector<double> weights(static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns));
   for (double& weight : weights) {
     const double number = static_cast<double>(numbers.next());
-    weight = number < 0.2 && weights.size() > 1 ? 0.0 : std::pow(10.0, 5.0 * static_cast<double>(numbers.next()));
+    weight =
+        number < 0.2 && weights.size() > 1 ? 0.0 : std::pow(10.0, 5.0 * static_cast<double>(numbers.next()));
   }
   grid.table = TexelTable(rows, columns, [&](int row, std::span<double> out) {
     for (std::size_t x = 0; x < out.size(); ++x) {
