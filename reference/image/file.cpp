@@ -1,75 +1,40 @@
 #include "reference/image/file.hpp"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "reference/base/atomic_file.hpp"
 #include "reference/base/error.hpp"
 #include "reference/base/text.hpp"
+#include "reference/image/exr.hpp"
+#include "reference/image/picture_library.hpp"
 
 namespace plumbline::image {
 namespace {
 
-constexpr int kMaxSide = 1 << 16;
-
-// OpenImageIO's reasons may have several lines.
-std::string reason_of(const std::string& text) {
-  return text.empty() ? "unknown reason" : one_line(text);
-}
-
-// Integer files hold sRGB unless they say they are linear; float and half files hold linear values.
-bool is_srgb_encoded(const OIIO::ImageSpec& spec) {
-  const std::string space = spec.get_string_attribute("oiio:ColorSpace");
-  if (spec.format.is_floating_point()) return false;
-  return space != "Linear" && space != "linear" && space != "scene_linear";
-}
-
-Image decode(OIIO::ImageInput& input, const std::string& name) {
-  const OIIO::ImageSpec spec = input.spec();
-  if (spec.width < 1 || spec.height < 1 || spec.width > kMaxSide || spec.height > kMaxSide ||
-      spec.nchannels < 1) {
-    throw InputError(fmt::format("{}: size {}x{} with {} channels is out of range", name, spec.width,
-                                 spec.height, spec.nchannels));
-  }
-  const auto channels = static_cast<std::size_t>(spec.nchannels);
-  const auto pixels = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
-  std::vector<float> values(pixels * channels);
-  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data())) {
-    throw InputError(fmt::format("{}: cannot read the image: {}", name, reason_of(input.geterror())));
-  }
-  const bool is_srgb = is_srgb_encoded(spec);
+// The first three channels; a gray image is repeated.
+Image colours_of(const RawPicture& raw) {
+  const auto channels = static_cast<std::size_t>(raw.channels);
   const bool is_gray = channels < 3;
-  Image result = make_image(spec.width, spec.height);
-  for (std::size_t i = 0; i < pixels; ++i) {
+  Image result = make_image(raw.width, raw.height);
+  for (std::size_t i = 0; i < result.pixels.size(); ++i) {
     for (int c = 0; c < 3; ++c) {
-      const float value = values[i * channels + (is_gray ? 0U : static_cast<std::size_t>(c))];
-      result.pixels[i][c] = is_srgb ? linear_from_srgb(value) : value;
+      const float value = raw.values[i * channels + (is_gray ? 0U : static_cast<std::size_t>(c))];
+      result.pixels[i][c] = raw.is_srgb_encoded ? linear_from_srgb(value) : value;
     }
   }
   return result;
 }
 
-// OpenImageIO without unassociating alpha: a texel's colour is what the file stores.
-OIIO::ImageSpec open_options() {
-  OIIO::ImageSpec options;
-  options.attribute("oiio:UnassociatedAlpha", 1);
-  return options;
-}
-
-void encode(const Image8& image, const std::string& name, OIIO::Filesystem::IOProxy& proxy) {
-  auto output = OIIO::ImageOutput::create("png");
-  if (!output) throw InputError(name + ": this OpenImageIO cannot write PNG");
-  OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  output->set_ioproxy(&proxy);
-  if (!output->open(name, spec) || !output->write_image(OIIO::TypeDesc::UINT8, image.rgb.data()) ||
-      !output->close()) {
-    throw InputError(fmt::format("{}: cannot write: {}", name, reason_of(output->geterror())));
+// Runs `body` of the picture library; its reasons may have several lines.
+template <class Body>
+auto naming_the_file(const std::string& name, const char* failure, Body&& body) {
+  try {
+    return body(picture_library());
+  } catch (const std::exception& error) {
+    throw InputError(fmt::format("{}: {}: {}", name, failure, one_line(error.what())));
   }
 }
 
@@ -81,16 +46,10 @@ Image read_image(const std::filesystem::path& path) {
 
 Image read_image(std::string_view bytes, const std::string& name) {
   if (bytes.empty()) throw InputError(name + ": is empty");
-  OIIO::Filesystem::IOMemReader proxy(const_cast<char*>(bytes.data()), bytes.size());  // only read
-  OIIO::ImageSpec options = open_options();
-  // OpenImageIO 2.4 passes the proxy on only when there are no options, so it goes in among them too:
-  // otherwise a file that has this name is read instead.
-  OIIO::Filesystem::IOProxy* source = &proxy;
-  options.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &source);
-  auto input = OIIO::ImageInput::open(name, &options, &proxy);
-  if (!input)
-    throw InputError(fmt::format("{}: cannot read as an image: {}", name, reason_of(OIIO::geterror())));
-  return decode(*input, name);
+  if (auto colours = read_plain_exr(bytes, name)) return *std::move(colours);
+  return naming_the_file(name, "cannot read as an image", [&](const PictureLibrary& library) {
+    return colours_of(library.decode(bytes, name));
+  });
 }
 
 float linear_from_srgb(float srgb) {
@@ -120,10 +79,8 @@ void write_png(const std::filesystem::path& path, const Image8& image) {
 }
 
 std::string encode_png(const Image8& image) {
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput proxy(bytes);
-  encode(image, "preview.png", proxy);
-  return {bytes.begin(), bytes.end()};
+  return naming_the_file("preview.png", "cannot write",
+                         [&](const PictureLibrary& library) { return library.encode_png(image); });
 }
 
 }  // namespace plumbline::image

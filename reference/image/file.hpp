@@ -1,4 +1,5 @@
-// reference/image/file.hpp: pictures from any file OpenImageIO reads, and PNG previews.
+// reference/image/file.hpp: pictures from any file OpenImageIO reads, and PNG previews. OpenEXR files with channels R, G and B
+// are read without OpenImageIO, which is loaded when something else is asked for (picture_library.hpp).
 #pragma once
 
 #include <filesystem>
@@ -12,7 +13,7 @@ namespace plumbline::image {
 /// Reads the first three channels (a gray image is repeated) as linear Rec. 709: 8- and 16-bit files are sRGB
 /// decoded unless they say otherwise, float and half files are taken as they are. Values are never clamped or
 /// repaired.
-/// @throws InputError when the file is missing, is no image, or is truncated.
+/// @throws InputError when the file is missing, is no image, or is truncated, or OpenImageIO cannot be loaded.
 [[nodiscard]] Image read_image(const std::filesystem::path& path);
 /// The same from memory; `name` stands for the file in messages, its extension is a hint only.
 [[nodiscard]] Image read_image(std::string_view bytes, const std::string& name);

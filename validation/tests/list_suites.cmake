@@ -1,5 +1,5 @@
 # After each build of the tests: writes a CTest file with one test a suite, from what the executable itself lists.
-# One process a suite and not one a test: starting costs 0.2 s, nearly all of it loading what OpenImageIO links to.
+# One process a suite and not one a test: Google Test's own work is then counted once.
 # Reads EXECUTABLE; writes OUTPUT.
 execute_process(COMMAND "${EXECUTABLE}" --gtest_list_tests OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "\n[A-Za-z0-9_/]+\\.[ \n]" lines "\n${listed}")  # tests are indented, suites are not

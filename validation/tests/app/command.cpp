@@ -108,8 +108,13 @@ Contents CommandTest::contents() const {
 }
 
 Outcome CommandTest::run(const Arguments& arguments, StandardOutput standard_output) const {
+  return run_program(PLUMBLINE_COMMAND, arguments, standard_output);
+}
+
+Outcome CommandTest::run_program(const std::string& program, const Arguments& arguments,
+                                 StandardOutput standard_output) const {
   const Streams streams;
-  std::vector<std::string> words = {PLUMBLINE_COMMAND};
+  std::vector<std::string> words = {program};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());

@@ -50,7 +50,10 @@ class CommandTest : public testing::Test {
   /// Runs `plumbline arguments…` in the folder.
   [[nodiscard]] Outcome run(const Arguments& arguments,
                             StandardOutput standard_output = StandardOutput::captured) const;
-  /// Runs it, expects exit code 0 and a silent standard error, and returns standard output.
+  /// Runs another program in the folder.
+  [[nodiscard]] Outcome run_program(const std::string& program, const Arguments& arguments,
+                                    StandardOutput standard_output = StandardOutput::captured) const;
+  /// Runs `plumbline arguments…`, expects exit code 0 and a silent standard error, and returns standard output.
   std::string succeed(const Arguments& arguments) const;
   /// Runs it and expects a refusal; see fault_of_refusal.
   void expect_refused(const Arguments& arguments, const std::vector<std::string>& words) const;
