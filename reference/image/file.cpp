@@ -29,7 +29,9 @@ bool is_srgb_encoded(const OIIO::ImageSpec& spec) {
   return space != "Linear" && space != "linear" && space != "scene_linear";
 }
 
-Image decode(OIIO::ImageInput& input, const std::string& name) {
+enum class Content { colour, data };
+
+Image decode(OIIO::ImageInput& input, const std::string& name, Content content) {
   const OIIO::ImageSpec spec = input.spec();
   if (spec.width < 1 || spec.height < 1 || spec.width > kMaxSide || spec.height > kMaxSide ||
       spec.nchannels < 1) {
@@ -42,7 +44,7 @@ Image decode(OIIO::ImageInput& input, const std::string& name) {
   if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data())) {
     throw InputError(fmt::format("{}: cannot read the image: {}", name, reason_of(input.geterror())));
   }
-  const bool is_srgb = is_srgb_encoded(spec);
+  const bool is_srgb = content == Content::colour && is_srgb_encoded(spec);
   const bool is_gray = channels < 3;
   Image result = make_image(spec.width, spec.height);
   for (std::size_t i = 0; i < pixels; ++i) {
@@ -73,13 +75,7 @@ void encode(const Image8& image, const std::string& name, OIIO::Filesystem::IOPr
   }
 }
 
-}  // namespace
-
-Image read_image(const std::filesystem::path& path) {
-  return read_image(read_file(path), path.string());
-}
-
-Image read_image(std::string_view bytes, const std::string& name) {
+Image read_from_memory(std::string_view bytes, const std::string& name, Content content) {
   if (bytes.empty()) throw InputError(name + ": is empty");
   OIIO::Filesystem::IOMemReader proxy(const_cast<char*>(bytes.data()), bytes.size());  // only read
   OIIO::ImageSpec options = open_options();
@@ -90,7 +86,21 @@ Image read_image(std::string_view bytes, const std::string& name) {
   auto input = OIIO::ImageInput::open(name, &options, &proxy);
   if (!input)
     throw InputError(fmt::format("{}: cannot read as an image: {}", name, reason_of(OIIO::geterror())));
-  return decode(*input, name);
+  return decode(*input, name, content);
+}
+
+}  // namespace
+
+Image read_image(const std::filesystem::path& path) {
+  return read_image(read_file(path), path.string());
+}
+
+Image read_image(std::string_view bytes, const std::string& name) {
+  return read_from_memory(bytes, name, Content::colour);
+}
+
+Image read_data_image(std::string_view bytes, const std::string& name) {
+  return read_from_memory(bytes, name, Content::data);
 }
 
 float linear_from_srgb(float srgb) {
@@ -110,6 +120,17 @@ Image8 tone_map(const Image& image, float exposure_stops) {
     for (int c = 0; c < 3; ++c) {
       const float encoded = srgb_from_linear(std::clamp(shown[c], 0.0F, 1.0F));
       result.rgb.push_back(static_cast<std::uint8_t>(std::lround(encoded * 255.0F)));
+    }
+  }
+  return result;
+}
+
+Image8 quantise_data(const Image& image) {
+  Image8 result{image.width, image.height, {}};
+  result.rgb.reserve(image.pixels.size() * 3);
+  for (const Rgb& pixel : image.pixels) {
+    for (int c = 0; c < 3; ++c) {
+      result.rgb.push_back(static_cast<std::uint8_t>(std::lround(std::clamp(pixel[c], 0.0F, 1.0F) * 255.0F)));
     }
   }
   return result;
