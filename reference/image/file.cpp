@@ -14,15 +14,18 @@
 namespace plumbline::image {
 namespace {
 
-// The first three channels; a gray image is repeated.
-Image colours_of(const RawPicture& raw) {
+enum class Content { colour, data };
+
+// The first three channels; a gray image is repeated. Data are linear whatever the file says of its colours.
+Image colours_of(const RawPicture& raw, Content content) {
   const auto channels = static_cast<std::size_t>(raw.channels);
   const bool is_gray = channels < 3;
+  const bool is_srgb = content == Content::colour && raw.is_srgb_encoded;
   Image result = make_image(raw.width, raw.height);
   for (std::size_t i = 0; i < result.pixels.size(); ++i) {
     for (int c = 0; c < 3; ++c) {
       const float value = raw.values[i * channels + (is_gray ? 0U : static_cast<std::size_t>(c))];
-      result.pixels[i][c] = raw.is_srgb_encoded ? linear_from_srgb(value) : value;
+      result.pixels[i][c] = is_srgb ? linear_from_srgb(value) : value;
     }
   }
   return result;
@@ -38,6 +41,14 @@ auto naming_the_file(const std::string& name, const char* failure, Body&& body) 
   }
 }
 
+Image read_from_memory(std::string_view bytes, const std::string& name, Content content) {
+  if (bytes.empty()) throw InputError(name + ": is empty");
+  if (auto colours = read_plain_exr(bytes, name)) return *std::move(colours);
+  return naming_the_file(name, "cannot read as an image", [&](const PictureLibrary& library) {
+    return colours_of(library.decode(bytes, name), content);
+  });
+}
+
 }  // namespace
 
 Image read_image(const std::filesystem::path& path) {
@@ -45,11 +56,11 @@ Image read_image(const std::filesystem::path& path) {
 }
 
 Image read_image(std::string_view bytes, const std::string& name) {
-  if (bytes.empty()) throw InputError(name + ": is empty");
-  if (auto colours = read_plain_exr(bytes, name)) return *std::move(colours);
-  return naming_the_file(name, "cannot read as an image", [&](const PictureLibrary& library) {
-    return colours_of(library.decode(bytes, name));
-  });
+  return read_from_memory(bytes, name, Content::colour);
+}
+
+Image read_data_image(std::string_view bytes, const std::string& name) {
+  return read_from_memory(bytes, name, Content::data);
 }
 
 float linear_from_srgb(float srgb) {
@@ -69,6 +80,17 @@ Image8 tone_map(const Image& image, float exposure_stops) {
     for (int c = 0; c < 3; ++c) {
       const float encoded = srgb_from_linear(std::clamp(shown[c], 0.0F, 1.0F));
       result.rgb.push_back(static_cast<std::uint8_t>(std::lround(encoded * 255.0F)));
+    }
+  }
+  return result;
+}
+
+Image8 quantise_data(const Image& image) {
+  Image8 result{image.width, image.height, {}};
+  result.rgb.reserve(image.pixels.size() * 3);
+  for (const Rgb& pixel : image.pixels) {
+    for (int c = 0; c < 3; ++c) {
+      result.rgb.push_back(static_cast<std::uint8_t>(std::lround(std::clamp(pixel[c], 0.0F, 1.0F) * 255.0F)));
     }
   }
   return result;

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "reference/base/error.hpp"
+#include "reference/scene/bumps.hpp"
 #include "reference/scene/cornell.hpp"
 #include "reference/scene/exact_scenes.hpp"
 #include "reference/scene/plaza.hpp"
@@ -110,7 +111,7 @@ struct Entry {
   Scene (*make)();
 };
 
-constexpr std::array<Entry, 12> kEntries = {{
+constexpr std::array<Entry, 13> kEntries = {{
     {"cornell", "32 triangles: the Cornell box from its measured data; area light, colour bleeding",
      make_cornell},
     {"sphere-on-plane",
@@ -130,6 +131,8 @@ constexpr std::array<Entry, 12> kEntries = {{
      "20000 triangles: hills, to see how costs grow; terrain:CELLS has 2 x CELLS^2 (terrain:2237: ten "
      "million)",
      make_small_terrain},
+    {"normal-mapped", "14336 triangles: ring, ground and wall under one normal map; normal-mapped transfer",
+     make_normal_mapped},
     {"sphere-furnace", "exact sphere seen from inside: emission 1, albedo 0.8; radiance 5 everywhere",
      [] { return make_sphere_room(); }},
     {"bowl", "exact half sphere, open above, albedo 0.8; under `white` irradiance 2.618 everywhere",

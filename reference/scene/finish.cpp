@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "reference/base/error.hpp"
+#include "reference/scene/normal_map.hpp"
 #include "reference/scene/normals.hpp"
+#include "reference/scene/tangents.hpp"
 
 namespace plumbline::scene {
 namespace {
@@ -59,6 +61,34 @@ void normalize_normals(Scene& scene, std::vector<std::uint8_t>& has_normal) {
   }
 }
 
+// Tangents are kept, made unit length or computed where a normal map needs them, and dropped elsewhere. One that belongs to a normal
+// which had to be computed is computed too, as glTF asks.
+Scene with_finished_tangents(Scene scene, const std::vector<std::uint8_t>& has_normal,
+                             const std::string& where) {
+  if (!has_normal_map(scene)) {
+    scene.tangents.clear();
+    return scene;
+  }
+  for (std::size_t i = 0; i < scene.texcoords.size(); ++i) {
+    const Vec2 uv = scene.texcoords[i];
+    if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) {
+      throw InputError(
+          fmt::format("{}: texture coordinate of vertex {} is not finite: ({}, {})", where, i, uv.x, uv.y));
+    }
+  }
+  scene.tangents.resize(scene.positions.size(), glm::vec4(0.0F));
+  for (std::size_t v = 0; v < scene.tangents.size(); ++v) {
+    glm::vec4& tangent = scene.tangents[v];
+    const Vec3 along(tangent);
+    if (v >= has_normal.size() || has_normal[v] == 0 || along == Vec3(0.0F)) {
+      tangent = glm::vec4(0.0F);
+    } else {
+      tangent = glm::vec4(normalized_once(along), tangent.w);
+    }
+  }
+  return with_computed_tangents(std::move(scene));
+}
+
 }  // namespace
 
 Vec3 normalized_once(Vec3 v) {
@@ -73,14 +103,16 @@ Scene finish_loading(Scene scene, std::vector<std::uint8_t> has_normal, const Lo
   require_finite(scene, has_normal, where);
   drop_degenerate(scene, where);
   normalize_normals(scene, has_normal);
-  const bool has_texture = std::any_of(scene.materials.begin(), scene.materials.end(),
-                                       [](const Material& material) { return material.albedo_texture >= 0; });
+  const bool has_texture = std::any_of(
+      scene.materials.begin(), scene.materials.end(),
+      [](const Material& material) { return material.albedo_texture >= 0 || material.normal_texture >= 0; });
   if (has_texture && scene.texcoords.empty()) scene.texcoords.resize(scene.positions.size(), Vec2(0.0F));
   try {
     scene = with_computed_normals(std::move(scene), has_normal, options.crease_deg);
   } catch (const InputError& error) {
     throw InputError(where + ": " + error.what());
   }
+  scene = with_finished_tangents(std::move(scene), has_normal, where);
   if (scene.cameras.empty()) scene.cameras.push_back(frame_camera(scene));
   validate(scene, where);
   return scene;

@@ -30,6 +30,7 @@ Scene with_ground(Scene scene, const GroundOptions& options) {
   }
   pad(scene.texcoords, scene.positions.size(), Vec2(0.0F));
   pad(scene.vertex_colors, scene.positions.size(), Rgb(1.0F));
+  pad(scene.tangents, scene.positions.size(), glm::vec4(1.0F, 0.0F, 0.0F, 1.0F));
   scene.materials.push_back({"ground", Rgb(options.albedo), Rgb(0.0F), -1, false});
   for (std::uint32_t i = 0; i + 1 < row; ++i) {
     for (std::uint32_t k = 0; k + 1 < row; ++k) {

@@ -22,12 +22,15 @@ namespace {
 
 using Mat4 = glm::dmat4;
 
+enum class Content { colour, normals };
+
 struct Loader {
   const tinygltf::Model& model;
   std::string where;  // the file's name
   Scene scene;
   std::vector<std::uint8_t> has_normal;
-  std::map<std::tuple<int, Wrap, Wrap>, int> textures;  // (image, wrapping) -> Scene::textures
+  std::map<std::tuple<int, Wrap, Wrap, Content>, int>
+      textures;  // (image, wrapping, content) -> Scene::textures
   std::optional<std::uint32_t> default_material;
 };
 
@@ -57,7 +60,7 @@ std::string extension_of(std::string_view bytes, const std::string& uri) {
   return std::filesystem::path(uri).extension().string();
 }
 
-image::Image read_texture_image(const Loader& loader, int index) {
+image::Image read_texture_image(const Loader& loader, int index, Content content) {
   const tinygltf::Image& source = at(loader, loader.model.images, index, "image");
   const std::string name = fmt::format("{}: image {}", loader.where, index);
   if (source.bufferView < 0 && source.image.empty()) {
@@ -67,7 +70,9 @@ image::Image read_texture_image(const Loader& loader, int index) {
       source.bufferView >= 0
           ? view_bytes(loader.model, source.bufferView, name)
           : std::string_view(reinterpret_cast<const char*>(source.image.data()), source.image.size());
-  return image::read_image(bytes, name + one_line(extension_of(bytes, source.uri)));
+  const std::string hinted = name + one_line(extension_of(bytes, source.uri));
+  return content == Content::normals ? image::read_data_image(bytes, hinted)
+                                     : image::read_image(bytes, hinted);
 }
 
 Wrap to_wrap(int mode) {
@@ -75,7 +80,7 @@ Wrap to_wrap(int mode) {
   return mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::kMirror : Wrap::kRepeat;
 }
 
-int add_texture(Loader& loader, int index) {
+int add_texture(Loader& loader, int index, Content content) {
   const tinygltf::Texture& source = at(loader, loader.model.textures, index, "texture");
   std::pair wrap(Wrap::kRepeat, Wrap::kRepeat);
   if (source.sampler >= 0) {
@@ -83,9 +88,11 @@ int add_texture(Loader& loader, int index) {
     wrap = {to_wrap(sampler.wrapS), to_wrap(sampler.wrapT)};
   }
   const auto next = static_cast<int>(loader.scene.textures.size());
-  const auto [entry, is_new] = loader.textures.try_emplace({source.source, wrap.first, wrap.second}, next);
+  const auto [entry, is_new] =
+      loader.textures.try_emplace({source.source, wrap.first, wrap.second, content}, next);
   if (is_new) {
-    loader.scene.textures.push_back({read_texture_image(loader, source.source), wrap.first, wrap.second});
+    loader.scene.textures.push_back(
+        {read_texture_image(loader, source.source, content), wrap.first, wrap.second});
   }
   return entry->second;
 }
@@ -95,6 +102,13 @@ double emissive_strength(const tinygltf::Material& material) {
   if (extension == material.extensions.end() || !extension->second.Has("emissiveStrength")) return 1.0;
   const tinygltf::Value& strength = extension->second.Get("emissiveStrength");
   return strength.IsNumber() ? strength.GetNumberAsDouble() : 1.0;
+}
+
+template <class TextureInfo>
+void refuse_transform(const Loader& loader, const TextureInfo& texture, std::size_t material) {
+  if (!texture.extensions.contains("KHR_texture_transform")) return;
+  refuse(loader, fmt::format("material {} ({}) uses KHR_texture_transform, which is not supported", material,
+                             one_line(loader.model.materials[material].name)));
 }
 
 Material to_material(Loader& loader, std::size_t index) {
@@ -114,11 +128,19 @@ Material to_material(Loader& loader, std::size_t index) {
                                one_line(source.name)));
   }
   if (pbr.baseColorTexture.index >= 0) {
-    if (pbr.baseColorTexture.extensions.contains("KHR_texture_transform")) {
-      refuse(loader, fmt::format("material {} ({}) uses KHR_texture_transform, which is not supported", index,
-                                 one_line(source.name)));
+    refuse_transform(loader, pbr.baseColorTexture, index);
+    material.albedo_texture = add_texture(loader, pbr.baseColorTexture.index, Content::colour);
+  }
+  if (source.normalTexture.index >= 0) {
+    refuse_transform(loader, source.normalTexture, index);
+    if (material.albedo_texture >= 0 && source.normalTexture.texCoord != pbr.baseColorTexture.texCoord) {
+      refuse(loader, fmt::format("material {} ({}) has its normal map on texture coordinates {} and its "
+                                 "colours on {}: one set is supported",
+                                 index, one_line(source.name), source.normalTexture.texCoord,
+                                 pbr.baseColorTexture.texCoord));
     }
-    material.albedo_texture = add_texture(loader, pbr.baseColorTexture.index);
+    material.normal_texture = add_texture(loader, source.normalTexture.index, Content::normals);
+    material.normal_scale = static_cast<float>(source.normalTexture.scale);
   }
   return material;
 }
@@ -180,6 +202,7 @@ bool is_mirroring(const Mat4& m) {
 struct Attributes {
   int position = -1;
   int normal = -1;
+  int tangent = -1;
   int texcoord = -1;
   int color = -1;
 
@@ -198,12 +221,18 @@ int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
 
 Attributes attributes_of(const Loader& loader, const tinygltf::Primitive& primitive) {
   int set = 0;
+  int tangent = -1;
   if (primitive.material >= 0) {
-    const auto& texture = at(loader, loader.model.materials, primitive.material, "material")
-                              .pbrMetallicRoughness.baseColorTexture;
-    if (texture.index >= 0) set = texture.texCoord;
+    const tinygltf::Material& material = at(loader, loader.model.materials, primitive.material, "material");
+    const auto& colours = material.pbrMetallicRoughness.baseColorTexture;
+    if (colours.index >= 0) {
+      set = colours.texCoord;
+    } else if (material.normalTexture.index >= 0) {
+      set = material.normalTexture.texCoord;
+    }
+    if (material.normalTexture.index >= 0) tangent = attribute(primitive, "TANGENT");
   }
-  return {attribute(primitive, "POSITION"), attribute(primitive, "NORMAL"),
+  return {attribute(primitive, "POSITION"), attribute(primitive, "NORMAL"), tangent,
           attribute(primitive, fmt::format("TEXCOORD_{}", set)), attribute(primitive, "COLOR_0")};
 }
 
@@ -219,6 +248,7 @@ AccessorValues read_attribute(const Loader& loader, int accessor, std::span<cons
 
 constexpr std::array<std::size_t, 1> kTwo = {2};
 constexpr std::array<std::size_t, 1> kThree = {3};
+constexpr std::array<std::size_t, 1> kFour = {4};
 constexpr std::array<std::size_t, 2> kThreeOrFour = {3, 4};
 
 Vec3 vec3_at(const AccessorValues& values, std::size_t i) {
@@ -246,7 +276,22 @@ void append_normals(Loader& loader, const AccessorValues& normals, const Mat4& t
   }
 }
 
-void append_optional(Loader& loader, const Attributes& attributes, std::size_t count,
+// The tangent is carried like the surface; where that mirrors, normal x tangent turns over and so does the sign.
+void append_tangents(Loader& loader, const AccessorValues& tangents, const Mat4& transform) {
+  const bool is_unchanged = glm::dmat3(transform) == glm::dmat3(1.0);
+  const float flip = is_mirroring(transform) ? -1.0F : 1.0F;
+  for (std::size_t i = 0; i < tangents.count; ++i) {
+    const float* t = tangents.values.data() + 4 * i;
+    Vec3 along(t[0], t[1], t[2]);
+    if (!is_unchanged) {
+      const Vec3d carried = glm::dmat3(transform) * Vec3d(along);
+      along = glm::length(carried) > 0.0 ? Vec3(glm::normalize(carried)) : Vec3(carried);
+    }
+    loader.scene.tangents.emplace_back(along, flip * t[3]);
+  }
+}
+
+void append_optional(Loader& loader, const Attributes& attributes, std::size_t count, const Mat4& transform,
                      const std::string& where) {
   Scene& scene = loader.scene;
   if (attributes.texcoord >= 0) {
@@ -255,6 +300,10 @@ void append_optional(Loader& loader, const Attributes& attributes, std::size_t c
     for (std::size_t i = 0; i < count; ++i) {
       scene.texcoords.emplace_back(values.values[2 * i], values.values[2 * i + 1]);
     }
+  }
+  if (attributes.tangent >= 0 && attributes.normal >= 0) {
+    scene.tangents.resize(scene.positions.size() - count, glm::vec4(0.0F));
+    append_tangents(loader, read_attribute(loader, attributes.tangent, kFour, count, where), transform);
   }
   if (attributes.color >= 0) {
     const AccessorValues values = read_attribute(loader, attributes.color, kThreeOrFour, count, where);
@@ -278,7 +327,7 @@ VertexBlock append_vertices(Loader& loader, const Attributes& attributes, const 
     loader.scene.normals.resize(first + positions.count, Vec3(0.0F));
     loader.has_normal.resize(first + positions.count, 0);
   }
-  append_optional(loader, attributes, positions.count, where);
+  append_optional(loader, attributes, positions.count, transform, where);
   return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(positions.count)};
 }
 

@@ -162,6 +162,7 @@ std::uint32_t append_copy(Scene& scene, std::uint32_t vertex) {
   scene.normals.emplace_back(0.0F);
   if (!scene.texcoords.empty()) scene.texcoords.push_back(Vec2(scene.texcoords[vertex]));
   if (!scene.vertex_colors.empty()) scene.vertex_colors.push_back(Rgb(scene.vertex_colors[vertex]));
+  if (!scene.tangents.empty()) scene.tangents.push_back(glm::vec4(scene.tangents[vertex]));
   return static_cast<std::uint32_t>(scene.positions.size() - 1);
 }
 

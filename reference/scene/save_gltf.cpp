@@ -94,6 +94,9 @@ Json add_attributes(Writer& writer, const Scene& scene) {
   if (!scene.texcoords.empty()) {
     attributes["TEXCOORD_0"] = add_accessor(writer, scene.texcoords, "VEC2", kFloat, kArrayBuffer);
   }
+  if (!scene.tangents.empty()) {
+    attributes["TANGENT"] = add_accessor(writer, scene.tangents, "VEC4", kFloat, kArrayBuffer);
+  }
   if (!scene.vertex_colors.empty()) {
     attributes["COLOR_0"] = add_accessor(writer, scene.vertex_colors, "VEC3", kFloat, kArrayBuffer);
   }
@@ -140,6 +143,10 @@ void add_material(Writer& writer, const Material& material) {
                  {"pbrMetallicRoughness", std::move(pbr)},
                  {"emissiveFactor", to_json(emission.factor)},
                  {"doubleSided", material.is_double_sided}};
+  if (material.normal_texture >= 0) {
+    result["normalTexture"] = {{"index", material.normal_texture},
+                               {"scale", static_cast<double>(material.normal_scale)}};
+  }
   if (emission.strength != 1.0) {
     constexpr const char* kStrength = "KHR_materials_emissive_strength";
     result["extensions"][kStrength] = {{"emissiveStrength", emission.strength}};
@@ -153,8 +160,10 @@ int wrap_mode(Wrap wrap) {
   return wrap == Wrap::kMirror ? 33648 : 10497;
 }
 
-void add_texture(Writer& writer, const Texture& texture) {
-  const std::string png = image::encode_png(image::tone_map(texture.image));
+// Eight bits a channel, so that a normal map of more is rounded, by 0.4 degrees at most at scale 1.
+void add_texture(Writer& writer, const Texture& texture, bool is_normal_map) {
+  const std::string png =
+      image::encode_png(is_normal_map ? image::quantise_data(texture.image) : image::tone_map(texture.image));
   const std::size_t view = add_view(writer, png, 0, 4);
   const std::size_t source = append(writer.root["images"], {{"bufferView", view}, {"mimeType", "image/png"}});
   const std::size_t sampler = append(
@@ -304,7 +313,12 @@ std::string to_glb(const Scene& scene, const std::vector<GlbExtension>& extensio
   writer.root["asset"] = {{"version", "2.0"}, {"generator", "Plumbline " PLUMBLINE_VERSION}};
   add_mesh(writer, scene);
   for (const Material& material : scene.materials) add_material(writer, material);
-  for (const Texture& texture : scene.textures) add_texture(writer, texture);
+  for (std::size_t i = 0; i < scene.textures.size(); ++i) {
+    const bool is_normal_map =
+        std::any_of(scene.materials.begin(), scene.materials.end(),
+                    [i](const Material& material) { return material.normal_texture == static_cast<int>(i); });
+    add_texture(writer, scene.textures[i], is_normal_map);
+  }
   for (const Camera& camera : scene.cameras) add_camera(writer, camera);
   for (const light::PunctualLight& light : scene.lights) add_light(writer, light);
   for (const GlbExtension& extension : extensions) add_extension(writer, extension);

@@ -50,6 +50,9 @@ void validate_vertices(const Scene& scene, const std::string& where) {
   if (!scene.vertex_colors.empty() && scene.vertex_colors.size() != count) {
     refuse(where, fmt::format("{} vertex colours for {} vertices", scene.vertex_colors.size(), count));
   }
+  if (!scene.tangents.empty() && scene.tangents.size() != count) {
+    refuse(where, fmt::format("{} tangents for {} vertices", scene.tangents.size(), count));
+  }
   for (std::size_t i = 0; i < count; ++i) {
     if (!(max_magnitude(scene.positions[i]) <= kLargestCoordinate) || !is_finite(scene.positions[i])) {
       refuse(where, fmt::format("position of vertex {} is not finite and within 1e18: {}", i,
@@ -69,6 +72,17 @@ void validate_vertices(const Scene& scene, const std::string& where) {
     if (!is_albedo(scene.vertex_colors[i])) {
       refuse(where,
              fmt::format("colour of vertex {} is outside [0, 1]: {}", i, text(scene.vertex_colors[i])));
+    }
+  }
+}
+
+void validate_tangents(const Scene& scene, const std::string& where) {
+  for (std::size_t i = 0; i < scene.tangents.size(); ++i) {
+    const glm::vec4 t = scene.tangents[i];
+    if (!is_unit(Vec3(t)) || std::abs(t.w) != 1.0F) {
+      refuse(where,
+             fmt::format("tangent of vertex {} is not a unit vector with a sign of 1 or -1: ({}, {}, {}, {})",
+                         i, t.x, t.y, t.z, t.w));
     }
   }
 }
@@ -109,9 +123,39 @@ void validate_primitives(const Scene& scene, const std::vector<Primitive>& primi
       refuse(where,
              fmt::format("{} {} uses material {}, there are {}", kind, i, material, scene.materials.size()));
     }
-    if (scene.materials[material].albedo_texture >= 0) {
+    if (scene.materials[material].albedo_texture >= 0 || scene.materials[material].normal_texture >= 0) {
       refuse(where, fmt::format("{} {} has no texture coordinates, but its material {} has a texture", kind,
                                 i, material));
+    }
+  }
+}
+
+void validate_normal_map(const Scene& scene, std::size_t index, const std::string& where) {
+  const Material& material = scene.materials[index];
+  const int texture = material.normal_texture;
+  if (texture < -1 || texture >= static_cast<int>(scene.textures.size())) {
+    refuse(where, fmt::format("material {} uses texture {} as normal map, there are {}", index, texture,
+                              scene.textures.size()));
+  }
+  if (texture < 0) return;
+  if (!std::isfinite(material.normal_scale)) {
+    refuse(where, fmt::format("normal scale of material {} is not finite: {}", index, material.normal_scale));
+  }
+  if (scene.texcoords.empty() || scene.tangents.empty()) {
+    refuse(where,
+           fmt::format("material {} has a normal map, but there are {} texture coordinates and {} tangents",
+                       index, scene.texcoords.size(), scene.tangents.size()));
+  }
+  for (const Material& other : scene.materials) {
+    if (other.albedo_texture == texture) {
+      refuse(where, fmt::format("texture {} is an albedo and, in material {}, a normal map", texture, index));
+    }
+  }
+  for (const Rgb& texel : scene.textures[static_cast<std::size_t>(texture)].image.pixels) {
+    if (!(texel.z > 0.5F)) {
+      refuse(where, fmt::format("normal map of material {} has a texel that does not point out of the "
+                                "surface (blue above 0.5): {}",
+                                index, text(texel)));
     }
   }
 }
@@ -134,6 +178,7 @@ void validate_materials(const Scene& scene, const std::string& where) {
       refuse(where, fmt::format("material {} has a texture, but there are no texture coordinates: 0", i));
     }
   }
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) validate_normal_map(scene, i, where);
   for (std::size_t i = 0; i < scene.textures.size(); ++i) {
     const image::Image& image = scene.textures[i].image;
     if (image.width < 1 || image.height < 1 ||
@@ -196,43 +241,6 @@ void validate_lights_and_cameras(const Scene& scene, const std::string& where) {
                                 camera.vertical_fov_rad));
     }
   }
-}
-
-// ---------------------------------------------------------------- texture lookup
-
-int wrapped(int texel, int size, Wrap wrap) {
-  if (wrap == Wrap::kClamp) return std::clamp(texel, 0, size - 1);
-  const int period = wrap == Wrap::kMirror ? 2 * size : size;
-  int inside = texel % period;
-  if (inside < 0) inside += period;
-  return inside < size ? inside : period - 1 - inside;
-}
-
-struct Footprint {
-  int low;
-  int high;
-  float weight_high;
-};
-
-// The two texels whose centres surround a coordinate. It is brought near zero first, so that large
-// coordinates neither overflow an int nor leave the texture.
-Footprint footprint(float coordinate, int size, Wrap wrap) {
-  const float period = wrap == Wrap::kMirror ? 2.0F : 1.0F;
-  const float near_zero = wrap == Wrap::kClamp ? std::clamp(coordinate, 0.0F, 1.0F)
-                                               : coordinate - period * std::floor(coordinate / period);
-  const float position = near_zero * static_cast<float>(size) - 0.5F;
-  const float floor = std::floor(position);
-  const int low = static_cast<int>(floor);
-  return {wrapped(low, size, wrap), wrapped(low + 1, size, wrap), position - floor};
-}
-
-Rgb bilinear(const Texture& texture, Vec2 uv) {
-  const Footprint x = footprint(uv.x, texture.image.width, texture.wrap_u);
-  const Footprint y = footprint(uv.y, texture.image.height, texture.wrap_v);
-  const auto row = [&](int v) {
-    return glm::mix(texture.image.at(x.low, v), texture.image.at(x.high, v), x.weight_high);
-  };
-  return glm::mix(row(y.low), row(y.high), y.weight_high);
 }
 
 template <class Value>
@@ -327,6 +335,16 @@ void add_primitives(Hasher& hasher, const Scene& scene) {
   }
 }
 
+// Nor do normal maps change the fingerprint of scenes that have none.
+void add_normal_maps(Hasher& hasher, const Scene& scene) {
+  if (scene.tangents.empty()) return;
+  hasher.add_array(scene.tangents);
+  for (const Material& material : scene.materials) {
+    hasher.add(material.normal_texture);
+    hasher.add(material.normal_scale);
+  }
+}
+
 }  // namespace
 
 bool is_degenerate(Vec3 a, Vec3 b, Vec3 c) {
@@ -358,6 +376,7 @@ Bounds bounds(const Scene& scene) {
 
 void validate(const Scene& scene, const std::string& where) {
   validate_vertices(scene, where);
+  validate_tangents(scene, where);
   validate_triangles(scene, where);
   validate_primitives(scene, scene.spheres, "sphere", where);
   validate_primitives(scene, scene.discs, "disc", where);
@@ -389,7 +408,7 @@ Rgb albedo_at(const Scene& scene, std::uint32_t surface, Vec2 barycentrics) {
   Rgb albedo = material.albedo;
   if (material.albedo_texture >= 0) {
     const Texture& texture = scene.textures[static_cast<std::size_t>(material.albedo_texture)];
-    albedo *= bilinear(texture, interpolated(scene.texcoords, scene.triangles[triangle], barycentrics));
+    albedo *= value_at(texture, interpolated(scene.texcoords, scene.triangles[triangle], barycentrics));
   }
   if (!scene.vertex_colors.empty()) {
     albedo *= interpolated(scene.vertex_colors, scene.triangles[triangle], barycentrics);
@@ -416,6 +435,7 @@ std::string fingerprint(const Scene& scene) {
   hasher.add_array(scene.triangle_materials);
   add_primitives(hasher, scene);
   add_materials(hasher, scene);
+  add_normal_maps(hasher, scene);
   hasher.add(static_cast<std::uint64_t>(scene.lights.size()));
   for (const light::PunctualLight& light : scene.lights) {
     hasher.add(static_cast<std::uint64_t>(light.index()));

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "reference/base/vector.hpp"
-#include "reference/image/image.hpp"
 #include "reference/light/punctual.hpp"
 #include "reference/scene/camera.hpp"
 #include "reference/scene/primitive.hpp"
+#include "reference/scene/texture.hpp"
 
 namespace plumbline::scene {
 
@@ -23,17 +23,8 @@ struct Material {
   Rgb emission{0.0F};       // radiance [W m^-2 sr^-1], >= 0
   int albedo_texture = -1;  // index into Scene::textures, multiplies `albedo`; -1 = none
   bool is_double_sided = false;
-};
-
-/// What lies outside the unit square of a texture.
-enum class Wrap : std::uint8_t { kRepeat, kMirror, kClamp };
-
-/// Linear albedo image, looked up bilinearly (texel centres at half texels), repeated unless told otherwise.
-/// Texture coordinate (0, 0) is the top left corner.
-struct Texture {
-  image::Image image;
-  Wrap wrap_u = Wrap::kRepeat;
-  Wrap wrap_v = Wrap::kRepeat;
+  int normal_texture = -1;    // index into Scene::textures: a normal map (normal_map.hpp); -1 = none
+  float normal_scale = 1.0F;  // multiplies x and y of what the map holds, as in glTF
 };
 
 /// All meshes of a file in one indexed triangle list. Vertex i is positions[i] with normals[i]; vertices keep
@@ -48,6 +39,8 @@ struct Scene {
   std::vector<Vec3> normals;       // unit, one per vertex: interpolated over the triangle
   std::vector<Vec2> texcoords;     // empty, or one per vertex
   std::vector<Rgb> vertex_colors;  // empty, or one per vertex; linear, multiplies the albedo
+  std::vector<glm::vec4>
+      tangents;  // empty without normal maps, else one per vertex: unit tangent and the bitangent's sign
   std::vector<glm::uvec3> triangles;
   std::vector<std::uint32_t> triangle_materials;  // one per triangle, index into `materials`
   std::vector<Sphere> spheres;
@@ -90,7 +83,8 @@ inline constexpr float kLargestCoordinate = 1e18F;
 /// indices are in range; positions and normals are finite, positions within kLargestCoordinate; normals are unit length
 /// (to 1e-3); array sizes agree; albedos (factor, texture, vertex colour) are in [0, 1]; emission is finite
 /// and not negative; lights and cameras are finite, with unit directions and angles in range; no triangle is
-/// degenerate; spheres and discs have radii above 0 (and above 1e-4 of their distance from the origin: nearer
+/// degenerate; a normal map has texels in [0, 1] that all point out of the surface (blue above 0.5, as glTF asks), is not an albedo
+/// texture as well, and there are tangents: unit vectors (to 1e-3) with the sign 1 or -1; spheres and discs have radii above 0 (and above 1e-4 of their distance from the origin: nearer
 /// to it floats can place them), unit axes, and materials without texture.
 void validate(const Scene& scene, const std::string& where);
 

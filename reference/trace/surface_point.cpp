@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "reference/scene/normal_map.hpp"
 #include "reference/trace/analytic.hpp"
 
 namespace plumbline::trace {
@@ -16,19 +17,23 @@ SurfacePoint point_on_triangle(const scene::Scene& scene, std::uint32_t triangle
   const Vec3 positions[3] = {scene.positions[corners.x], scene.positions[corners.y],
                              scene.positions[corners.z]};
   SurfacePoint point = point_on_plane(positions, weights, scene::geometric_normal(scene, triangle));
-  point.shading_normal = shading_normal(scene, corners, weights, point.geometric_normal);
+  point.shading_normal = shading_normal(scene, triangle, weights, point.geometric_normal);
   return point;
 }
 
 }  // namespace
 
-Vec3 shading_normal(const scene::Scene& scene, const glm::uvec3& corners, const Vec3& weights,
+Vec3 shading_normal(const scene::Scene& scene, std::uint32_t triangle, const Vec3& weights,
                     const Vec3& geometric) {
+  const glm::uvec3 corners = scene.triangles[triangle];
   const Vec3 sum = weights.x * scene.normals[corners.x] + weights.y * scene.normals[corners.y] +
                    weights.z * scene.normals[corners.z];
   const float length = glm::length(sum);
   // Opposite vertex normals can cancel; the plane's own normal is then the only one there is.
-  return length > 1e-6F ? sum / length : geometric;
+  const Vec3 normal = length > 1e-6F ? sum / length : geometric;
+  if (scene.tangents.empty() || scene.materials[scene.triangle_materials[triangle]].normal_texture < 0)
+    return normal;
+  return scene::mapped_normal(scene, triangle, weights, normal);
 }
 
 SurfaceHit surface_hit(const scene::Scene& scene, const Hit& hit, const Vec3& ray_direction) {

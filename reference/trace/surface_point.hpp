@@ -30,8 +30,8 @@ struct SurfaceHit {
 /// Parts of surface_hit, for tables that hold the corners ready. `weights` are the barycentric ones, their sum is 1.
 /// Both normals of the point are `normal`.
 [[nodiscard]] SurfacePoint point_on_plane(const Vec3 (&corners)[3], const Vec3& weights, const Vec3& normal);
-/// Interpolated vertex normal, unit; `geometric` where opposite normals cancel.
-[[nodiscard]] Vec3 shading_normal(const scene::Scene& scene, const glm::uvec3& corners, const Vec3& weights,
+/// Interpolated vertex normal, unit (`geometric` where opposite normals cancel), turned by the material's normal map.
+[[nodiscard]] Vec3 shading_normal(const scene::Scene& scene, std::uint32_t triangle, const Vec3& weights,
                                   const Vec3& geometric);
 /// The same point seen from behind.
 void turn_around(SurfaceHit& hit);
@@ -42,7 +42,8 @@ void turn_around(SurfaceHit& hit);
 /// One point for each vertex of the scene. A vertex lies on the very edge of its triangles, often in the
 /// plane of a neighbouring wall, where visibility is ambiguous: the point is moved by 1/1000 towards the
 /// middle of the largest triangle that uses the vertex, and that triangle's plane is its geometric normal. A
-/// vertex no triangle uses is a free point.
+/// vertex no triangle uses is a free point. The shading normal is the vertex' own, without any normal map: a map holds what is finer than
+/// vertices.
 [[nodiscard]] std::vector<SurfacePoint> vertex_points(const scene::Scene& scene);
 
 // ---------------------------------------------------------------- bodies of what every ray needs

@@ -25,7 +25,8 @@ SurfaceTable::SurfaceTable(const scene::Scene& scene) : scene_(&scene) {
     for (int k = 0; k < 3; ++k) record.corners[k] = scene.positions[corners[k]];
     record.normal = scene::geometric_normal(scene, t);
     record.material = scene.triangle_materials[t];
-    record.is_flat = has_flat_normals(scene, corners, record.normal);
+    record.is_flat = scene.materials[record.material].normal_texture < 0 &&
+                     has_flat_normals(scene, corners, record.normal);
   }
   for (std::size_t i = 0; i < scene::primitive_count(scene); ++i) {
     const scene::Material& material =
@@ -44,8 +45,7 @@ SurfaceHit SurfaceTable::hit(const Hit& hit, const Vec3& ray_direction) const {
   const Vec3 weights(1.0F - hit.barycentrics.x - hit.barycentrics.y, hit.barycentrics.x, hit.barycentrics.y);
   SurfaceHit result{point_on_plane(record.corners, weights, record.normal), true};
   if (!record.is_flat) {
-    result.point.shading_normal =
-        shading_normal(*scene_, scene_->triangles[hit.triangle], weights, record.normal);
+    result.point.shading_normal = shading_normal(*scene_, hit.triangle, weights, record.normal);
   }
   if (glm::dot(record.normal, ray_direction) > 0.0F) turn_around(result);
   return result;

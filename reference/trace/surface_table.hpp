@@ -41,7 +41,8 @@ class SurfaceTable {
     Vec3 corners[3];
     Vec3 normal{0.0F};  // geometric, unit
     std::uint32_t material = 0;
-    bool is_flat = true;  // the vertex normals are the geometric one, to float rounding
+    bool is_flat =
+        true;  // the vertex normals are the geometric one, to float rounding, and no map bends them
   };
   const scene::Scene* scene_;
   std::vector<Record> records_;

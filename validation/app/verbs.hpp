@@ -18,6 +18,7 @@ void register_identify(CLI::App& app, Action& chosen);
 void register_conventions(CLI::App& app, Action& chosen);
 void register_conform(CLI::App& app, Action& chosen);
 void register_bench(CLI::App& app, Action& chosen);
+void register_normal_basis(CLI::App& app, Action& chosen);
 void register_scenes(CLI::App& app, Action& chosen);
 
 }  // namespace plumbline::app

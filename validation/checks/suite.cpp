@@ -10,6 +10,8 @@ const std::vector<Family>& families() {
       {"furnace", "white furnace on each scene", check_furnace},
       {"truths", "path tracer against closed forms of light transport", check_truths, true},
       {"images", "PRT images against path-traced ones", check_images},
+      {"normal-maps", "normal-mapped PRT in seven forms against path tracing with the same map",
+       check_normal_maps, true},
       {"exponential", "products, exponentials and logarithms, accumulated blockers", check_exponential},
   };
   return all;

@@ -32,6 +32,9 @@ void check_truths(const Suite& suite, report::Report& report);
 /// Images of shadowed PRT against direct-light path tracing, under the band-limited and under the full light.
 void check_images(const Suite& suite, report::Report& report);
 
+/// Normal-mapped PRT in seven forms against path tracing with the same map: the given scenes that have one, else builtin:normal-mapped.
+void check_normal_maps(const Suite& suite, report::Report& report);
+
 struct Family {
   std::string name;
   std::string description;
