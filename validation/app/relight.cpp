@@ -77,7 +77,8 @@ void write_view(const Options& options, const transfer::Baked& baked, const ligh
 }
 
 int run(const Options& options) {
-  if (options.output.empty() && options.vertices.empty())
+  require_valid(options.gl, options.backend);
+  if (options.output.empty() && options.vertices.empty() && !options.gl.is_audited)
     throw InputError("relight: nothing to do: give -o OUT.exr or --vertices OUT.csv");
   (void)parse_size(options.size);  // refuse it before the work
   require_destinations(
@@ -91,7 +92,7 @@ int run(const Options& options) {
   std::optional<image::LayeredImage> image;
   nlohmann::json gl;
   std::optional<GlView> view;
-  if (!options.output.empty()) view = view_of(options, baked, environment);
+  if (!options.output.empty() || options.gl.is_audited) view = view_of(options, baked, environment);
   if (options.backend == "gl") {
     GlRelit relit = relight_by_gl(options.gl, baked, lighting, view);
     radiance = std::move(relit.unit_albedo_radiance);
@@ -103,7 +104,7 @@ int run(const Options& options) {
   const double seconds = seconds_since(start);
   if (view && !image)
     image = relight::render_view(baked.scene, radiance, view->camera, view->settings, view->background);
-  if (image) write_view(options, baked, environment, *std::move(image));
+  if (!options.output.empty()) write_view(options, baked, environment, *std::move(image));
   if (!options.vertices.empty()) write_output(options.vertices, csv_of(baked.scene, radiance));
   nlohmann::json summary = {{"input", options.input},
                             {"environment", environment.name},

@@ -1,8 +1,12 @@
 #include "validation/app/relight_gl.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
 
 #include "prt/relight/gl/renderer.hpp"
+#include "reference/base/error.hpp"
+#include "validation/app/gl_audit.hpp"
 #include "validation/app/options.hpp"
 
 namespace plumbline::app {
@@ -15,6 +19,18 @@ void add_gl_options(CLI::App& verb, GlOptions& options) {
       ->check(CLI::IsMember({"f32", "f16", "unorm16", "unorm8"}));
   verb.add_option("--gl-target", options.target, "with --backend gl: what the image is drawn into")
       ->check(CLI::IsMember({"f32", "f16"}));
+  verb.add_flag(
+      "--gl-audit", options.is_audited,
+      "with --backend gl: add to --json how far the image is from the CPU's, what each storage costs, and "
+      "the largest radiance that each target holds");
+}
+
+void require_valid(const GlOptions& options, const std::string& backend) {
+  const GlOptions untouched;
+  if (backend == "gl" || (options.context == untouched.context && options.storage == untouched.storage &&
+                          options.target == untouched.target && !options.is_audited))
+    return;
+  throw InputError(fmt::format("relight: --gl-… options need --backend gl, got --backend {}", backend));
 }
 
 GlRelit relight_by_gl(const GlOptions& options, const transfer::Baked& baked, const sh::ShRgb& lighting,
@@ -49,6 +65,11 @@ GlRelit relight_by_gl(const GlOptions& options, const transfer::Baked& baked, co
     renderer->set_light(lighting);
     renderer->draw(nullptr);
   });
+  renderer.reset();
+  if (options.is_audited) {
+    result.summary["audit"] =
+        gl_audit(context, baked, lighting, view->camera, view->settings.width, view->settings.height);
+  }
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "prt/relight/cpu.hpp"
+#include "prt/sh/lighting.hpp"
 #include "prt/transfer/baked_file.hpp"
 
 namespace plumbline::app {
@@ -17,8 +18,11 @@ struct GlOptions {
   std::string context = "auto";
   std::string storage = "f32";
   std::string target = "f32";
+  bool is_audited = false;
 };
 void add_gl_options(CLI::App& verb, GlOptions& options);
+/// @throws InputError when they ask for something of OpenGL and the backend is another.
+void require_valid(const GlOptions& options, const std::string& backend);
 
 struct GlView {
   scene::Camera camera;

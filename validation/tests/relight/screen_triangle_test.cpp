@@ -54,8 +54,8 @@ Errors errors_of(float size) {
       const Vec3d truth = true_weights(scene, grid, column, row);
       const Vec3d ours(weights_at(triangle, column, row));
       worst.ours = std::max(worst.ours, glm::length(ours - truth));
-      worst.of_the_hit =
-          std::max(worst.of_the_hit, glm::length(glm::dvec2(hit->barycentrics) - glm::dvec2(truth.y, truth.z)));
+      worst.of_the_hit = std::max(worst.of_the_hit,
+                                  glm::length(glm::dvec2(hit->barycentrics) - glm::dvec2(truth.y, truth.z)));
     }
   }
   EXPECT_GE(hits, 3);
