@@ -53,7 +53,8 @@ nlohmann::json gl_audit(const relight::gl::Context& context, const transfer::Bak
   for (const checks::TargetRange& range : checks::target_ranges(context, baked, lighting, camera)) {
     targets.push_back({{"target", relight::gl::to_string(range.target)},
                        {"largest_radiance", range.largest_radiance},
-                       {"light_scale", range.light_scale}});
+                       {"light_scale", range.light_scale},
+                       {"saturates", range.saturates}});
   }
   return {{"agreement",
            json_of(checks::gl_agreement(context, renderer, baked, lighting, cpu, camera, width, height))},

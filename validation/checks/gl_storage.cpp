@@ -68,23 +68,37 @@ std::optional<double> brightest(Renderer& renderer, const sh::ShRgb& lighting) {
   return largest;
 }
 
-// A finite light and one that is twice as bright and no longer finite, then halving between them.
-TargetRange range_of(Renderer& renderer, const sh::ShRgb& lighting) {
-  const auto at = [&](double scale) { return brightest(renderer, scaled(lighting, scale)); };
-  if (at(1.0).value_or(1.0) == 0.0) throw InputError("light: the image of the scene under it is black");
-  int low = -128;  // 2^low is finite, 2^high is not
+/// `radiance`: the brightest sample under the light itself. It grows with the light.
+struct Searched {
+  Renderer& renderer;
+  const sh::ShRgb& lighting;
+  double radiance;
+
+  [[nodiscard]] bool holds(double scale) const {
+    const std::optional<double> found = brightest(renderer, scaled(lighting, scale));
+    return found && std::abs(*found - scale * radiance) <= std::ldexp(scale * radiance, -10);
+  }
+};
+
+// A light that the target holds and one that is twice as bright and that it does not, then halving between them.
+TargetRange range_of(const Searched& search) {
+  int low = 0;  // of powers of 2: every target holds radiance 1
   int high = 256;
   while (high - low > 1) {
     const int middle = (low + high) / 2;
-    (at(std::ldexp(1.0, middle)) ? low : high) = middle;
+    (search.holds(std::ldexp(1.0 / search.radiance, middle)) ? low : high) = middle;
   }
-  double finite = std::ldexp(1.0, low);
-  double infinite = std::ldexp(1.0, high);
-  while (infinite - finite > 0.5e-5 * finite) {
-    const double middle = 0.5 * (finite + infinite);
-    (at(middle) ? finite : infinite) = middle;
+  double held = std::ldexp(1.0 / search.radiance, low);
+  double lost = std::ldexp(1.0 / search.radiance, high);
+  while (lost - held > 0.5e-5 * held) {
+    const double middle = 0.5 * (held + lost);
+    (search.holds(middle) ? held : lost) = middle;
   }
-  return {Target::f32, at(finite).value_or(0.0), finite};
+  TargetRange range;
+  range.light_scale = held;
+  range.largest_radiance = brightest(search.renderer, scaled(search.lighting, held)).value_or(0.0);
+  range.saturates = brightest(search.renderer, scaled(search.lighting, 1.01 * lost)).has_value();
+  return range;
 }
 
 }  // namespace
@@ -106,10 +120,13 @@ std::vector<StorageError> storage_errors(const Context& context, const transfer:
 std::vector<TargetRange> target_ranges(const Context& context, const transfer::Baked& baked,
                                        const sh::ShRgb& lighting, const scene::Camera& camera) {
   std::vector<TargetRange> result;
+  double radiance = 0.0;
   for (const Target target : {Target::f32, Target::f16}) {
     Renderer renderer(context, baked.scene, baked.transfer, {Storage::f32, target});
     renderer.set_view(camera, {64, 64, 1, 0});
-    result.push_back(range_of(renderer, lighting));
+    if (target == Target::f32) radiance = brightest(renderer, lighting).value_or(0.0);
+    if (!(radiance > 0.0)) throw InputError("light: the image of the scene under it is black");
+    result.push_back(range_of({renderer, lighting, radiance}));
     result.back().target = target;
   }
   return result;

@@ -20,11 +20,13 @@ struct StorageError {
                                                        const transfer::Baked& baked,
                                                        const sh::ShRgb& lighting);
 
-/// The brightest image that has no Inf or NaN yet: the scene's light is made brighter until it has.
+/// The brightest image that a target still holds: the scene's light is made brighter until a sample is Inf, NaN, or the
+/// brightest one is off by more than half precision's 2^-10.
 struct TargetRange {
   relight::gl::Target target = relight::gl::Target::f32;
   double largest_radiance = 0.0;  // of any sample, to a relative 1e-5
   double light_scale = 0.0;       // of the light there
+  bool saturates = false;         // a little beyond there is no Inf, but the wrong finite number
 };
 /// @throws InputError when the light, or the image of the scene, is black.
 [[nodiscard]] std::vector<TargetRange> target_ranges(const relight::gl::Context& context,
