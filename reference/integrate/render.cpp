@@ -12,6 +12,7 @@
 #include "reference/base/error.hpp"
 #include "reference/base/parallel.hpp"
 #include "reference/integrate/allocation.hpp"
+#include "reference/integrate/direct_view.hpp"
 #include "reference/integrate/film.hpp"
 #include "reference/integrate/shards.hpp"
 
@@ -90,9 +91,9 @@ Film make_film(const RenderSettings& settings) {
   return film;
 }
 
-void add_extras(Extras& extras, const CameraSample& sample) {
+void add_extras(Extras& extras, const CameraSample& sample, const RgbD& emission) {
   ++extras.samples;
-  extras.emission += RgbD(sample.emission);
+  extras.emission += emission;
   extras.albedo += RgbD(sample.albedo);
   if (!sample.is_hit) return;
   ++extras.hits;
@@ -119,20 +120,23 @@ void render_pixel(const World& world, const scene::Camera& camera, const RenderS
                   int samples, int x, int y, BounceTerms& terms, Film& film) {
   const std::size_t pixel =
       static_cast<std::size_t>(y) * static_cast<std::size_t>(film.width) + static_cast<std::size_t>(x);
-  const scene::ImagePlane plane = scene::image_plane(camera, film.width, film.height);
+  const PixelView view{camera.eye, scene::image_plane(camera, film.width, film.height), x, y,
+                       settings.is_background_visible};
+  const bool is_uneven = is_emission_uneven(world, view);
   RandomisedMean mean(samples, settings.randomisations);
   for (int s = 0; s < samples; ++s) {
     const SamplePlace place = sample_place(round, samples, s, settings.randomisations);
     Sampler sampler(settings.seed, pixel, place.randomisation, place.index);
     const Vec2 jitter = sampler.next_2d();
     const Vec3 direction =
-        scene::ray_direction(plane, static_cast<float>(x) + jitter.x, static_cast<float>(y) + jitter.y);
+        scene::ray_direction(view.plane, static_cast<float>(x) + jitter.x, static_cast<float>(y) + jitter.y);
     CameraSample seen = sample_radiance(world, {camera.eye, direction}, settings.max_bounces, sampler, terms);
     if (!seen.is_hit && !settings.is_background_visible) seen.emission = Rgb(0.0F);
-    RgbD sum(seen.emission);
+    const RgbD emission = is_uneven ? split_emission(world, view, sampler) : RgbD(seen.emission);
+    RgbD sum = emission;
     for (const RgbD& term : terms) sum += term;
     mean.add(s, sum);
-    if (!film.extras.empty()) add_extras(film.extras[pixel], seen);
+    if (!film.extras.empty()) add_extras(film.extras[pixel], seen, emission);
     if (!film.halves.empty()) add_half(film.halves[pixel], place.randomisation, sum);
     add_bounces(terms, pixel, film);
   }
