@@ -6,10 +6,10 @@
 #include <optional>
 #include <span>
 
+#include "prt/relight/screen_triangle.hpp"
 #include "reference/base/error.hpp"
 #include "reference/base/parallel.hpp"
 #include "reference/trace/ray_caster.hpp"
-#include "reference/trace/surface_point.hpp"
 
 namespace plumbline::relight {
 namespace {
@@ -30,19 +30,22 @@ struct Seen {
 };
 
 Seen look(const trace::RayCaster& caster, const scene::Scene& scene,
-          const std::vector<Rgb>& unit_albedo_radiance, const trace::Ray& ray,
+          const std::vector<Rgb>& unit_albedo_radiance, const SampleGrid& samples, int column, int row,
           const std::function<Rgb(const Vec3&)>& background) {
+  const trace::Ray ray{Vec3(samples.eye), sample_direction(samples, column, row)};
   const std::optional<trace::Hit> hit = caster.closest_hit(ray);
   if (!hit) {
     const Rgb sky = background ? background(ray.direction) : Rgb(0.0F);
     return {sky, sky, Rgb(0.0F)};
   }
-  if (!trace::surface_hit(scene, *hit, ray.direction).is_front) return {};
+  // The hit's own barycentric coordinates carry the rounding of the whole distance: a 1e-4 of a small triangle.
+  const ScreenTriangle triangle = screen_triangle(scene, hit->triangle, samples);
+  if (!triangle.is_front) return {};
   const glm::uvec3 corners = scene.triangles[hit->triangle];
-  const Vec2 b = hit->barycentrics;
-  const Rgb unit = (1.0F - b.x - b.y) * unit_albedo_radiance[corners.x] +
-                   b.x * unit_albedo_radiance[corners.y] + b.y * unit_albedo_radiance[corners.z];
-  const Rgb albedo = scene::albedo_at(scene, hit->triangle, b);
+  const Vec3 weights = weights_at(triangle, column, row);
+  const Rgb unit = weights.x * unit_albedo_radiance[corners.x] + weights.y * unit_albedo_radiance[corners.y] +
+                   weights.z * unit_albedo_radiance[corners.z];
+  const Rgb albedo = scene::albedo_at(scene, hit->triangle, Vec2(weights.y, weights.z));
   return {albedo * unit, Rgb(0.0F), albedo};
 }
 
@@ -61,14 +64,29 @@ std::vector<Rgb> unit_albedo_exit_radiance(const transfer::Transfer& transfer, c
   return result;
 }
 
-image::LayeredImage render_view(const scene::Scene& scene, const std::vector<Rgb>& unit_albedo_radiance,
-                                const scene::Camera& camera, const ViewSettings& settings,
-                                const std::function<Rgb(const Vec3&)>& background) {
+void require_valid(const ViewSettings& settings) {
   if (settings.width < 1 || settings.height < 1 || settings.grid < 1) {
     throw InputError(fmt::format("size: expected at least 1x1 with 1 ray a pixel, got {}x{} with {}",
                                  settings.width, settings.height, settings.grid * settings.grid));
   }
+}
+
+image::LayeredImage view_layers(const image::Image& mean, const image::Image& sky, const image::Image& albedo,
+                                int grid) {
+  image::LayeredImage result{mean.width, mean.height, {}, {}};
+  image::set_rgb_layer(result, "", mean);
+  image::set_rgb_layer(result, "emission", sky);
+  image::set_rgb_layer(result, "albedo", albedo);
+  result.channels["samples"].assign(mean.pixels.size(), static_cast<float>(grid * grid));
+  return result;
+}
+
+image::LayeredImage render_view(const scene::Scene& scene, const std::vector<Rgb>& unit_albedo_radiance,
+                                const scene::Camera& camera, const ViewSettings& settings,
+                                const std::function<Rgb(const Vec3&)>& background) {
+  require_valid(settings);
   const trace::RayCaster caster(scene);
+  const SampleGrid samples = sample_grid(camera, settings.width, settings.height, settings.grid);
   image::Image mean = image::make_image(settings.width, settings.height);
   image::Image sky = mean;
   image::Image albedo = mean;
@@ -77,12 +95,9 @@ image::LayeredImage render_view(const scene::Scene& scene, const std::vector<Rgb
     for (int x = 0; x < settings.width; ++x) {
       RgbD sums[3] = {};
       for (int k = 0; k < settings.grid * settings.grid; ++k) {
-        const float step = 1.0F / static_cast<float>(settings.grid);
-        const float dx = (static_cast<float>(k % settings.grid) + 0.5F) * step;
-        const float dy = (static_cast<float>(k / settings.grid) + 0.5F) * step;
-        const Vec3 direction = scene::ray_direction(
-            camera, static_cast<float>(x) + dx, static_cast<float>(y) + dy, settings.width, settings.height);
-        const Seen seen = look(caster, scene, unit_albedo_radiance, {camera.eye, direction}, background);
+        const Seen seen =
+            look(caster, scene, unit_albedo_radiance, samples, x * settings.grid + k % settings.grid,
+                 y * settings.grid + k / settings.grid, background);
         sums[0] += RgbD(seen.radiance);
         sums[1] += RgbD(seen.background);
         sums[2] += RgbD(seen.albedo);
@@ -93,12 +108,7 @@ image::LayeredImage render_view(const scene::Scene& scene, const std::vector<Rgb
       albedo.at(x, y) = Rgb(sums[2] / rays);
     }
   });
-  image::LayeredImage result{settings.width, settings.height, {}, {}};
-  image::set_rgb_layer(result, "", mean);
-  image::set_rgb_layer(result, "emission", sky);
-  image::set_rgb_layer(result, "albedo", albedo);
-  result.channels["samples"].assign(mean.pixels.size(), static_cast<float>(settings.grid * settings.grid));
-  return result;
+  return view_layers(mean, sky, albedo, settings.grid);
 }
 
 }  // namespace plumbline::relight

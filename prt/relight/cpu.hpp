@@ -24,6 +24,11 @@ struct ViewSettings {
   int grid = 4;  // grid x grid rays a pixel, at the centres of equal cells
   int threads = 0;
 };
+/// @throws InputError unless there is at least one pixel with one ray.
+void require_valid(const ViewSettings& settings);
+/// A view's channels from its parts: what is seen, the background in it, the albedo. `grid` as in ViewSettings.
+[[nodiscard]] image::LayeredImage view_layers(const image::Image& mean, const image::Image& background,
+                                              const image::Image& albedo, int grid);
 
 /// The scene through a camera: vertex values interpolated over each triangle times the albedo of the point,
 /// box filter of one pixel, `background` where nothing is met (none: black). Channels as in

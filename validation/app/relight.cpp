@@ -9,6 +9,7 @@
 #include "reference/image/exr.hpp"
 #include "validation/app/options.hpp"
 #include "validation/app/points_csv.hpp"
+#include "validation/app/relight_gl.hpp"
 #include "validation/app/verbs.hpp"
 
 namespace plumbline::app {
@@ -20,6 +21,7 @@ struct Options {
   std::string camera;
   std::string size = "256x256";
   std::string backend = "cpu";
+  GlOptions gl;
   int spp = 16;
   int threads = 0;
   std::string output;
@@ -48,16 +50,21 @@ std::string csv_of(const scene::Scene& scene, const std::vector<Rgb>& unit_albed
 std::string reproducing_command(const Options& o) {
   std::string command = fmt::format("plumbline relight {}", quoted(o.input)) + command_text(o.light);
   if (!o.camera.empty()) command += " --camera " + quoted(o.camera);
-  return command + fmt::format(" --size {} --spp {} --backend {}", o.size, o.spp, o.backend);
+  command += fmt::format(" --size {} --spp {} --backend {}", o.size, o.spp, o.backend);
+  if (o.backend != "gl") return command;
+  return command + fmt::format(" --gl-context {} --gl-storage {} --gl-target {}", o.gl.context, o.gl.storage,
+                               o.gl.target);
+}
+
+GlView view_of(const Options& options, const transfer::Baked& baked, const light::Environment& environment) {
+  const Size size = parse_size(options.size);
+  return {camera_of(baked.scene, options.camera),
+          {size.width, size.height, grid_of(options.spp), options.threads},
+          [&](const Vec3& direction) { return light::radiance(environment, direction); }};
 }
 
 void write_view(const Options& options, const transfer::Baked& baked, const light::Environment& environment,
-                const std::vector<Rgb>& unit_albedo_radiance) {
-  const Size size = parse_size(options.size);
-  const relight::ViewSettings view{size.width, size.height, grid_of(options.spp), options.threads};
-  image::LayeredImage image =
-      relight::render_view(baked.scene, unit_albedo_radiance, camera_of(baked.scene, options.camera), view,
-                           [&](const Vec3& direction) { return light::radiance(environment, direction); });
+                image::LayeredImage image) {
   image.attributes = {{"plumbline.version", PLUMBLINE_VERSION},
                       {"plumbline.baked", options.input},
                       {"plumbline.sceneHash", scene::fingerprint(baked.scene)},
@@ -70,7 +77,8 @@ void write_view(const Options& options, const transfer::Baked& baked, const ligh
 }
 
 int run(const Options& options) {
-  if (options.output.empty() && options.vertices.empty())
+  require_valid(options.gl, options.backend);
+  if (options.output.empty() && options.vertices.empty() && !options.gl.is_audited)
     throw InputError("relight: nothing to do: give -o OUT.exr or --vertices OUT.csv");
   (void)parse_size(options.size);  // refuse it before the work
   require_destinations(
@@ -80,18 +88,34 @@ int run(const Options& options) {
   const light::Environment environment = load(options.light);
   const auto start = std::chrono::steady_clock::now();
   const sh::ShRgb lighting = sh::project_radiance(environment, baked.transfer.bands);
-  const std::vector<Rgb> radiance = relight::unit_albedo_exit_radiance(baked.transfer, lighting);
+  std::vector<Rgb> radiance;
+  std::optional<image::LayeredImage> image;
+  nlohmann::json gl;
+  std::optional<GlView> view;
+  if (!options.output.empty() || options.gl.is_audited) view = view_of(options, baked, environment);
+  if (options.backend == "gl") {
+    GlRelit relit = relight_by_gl(options.gl, baked, lighting, view);
+    radiance = std::move(relit.unit_albedo_radiance);
+    image = std::move(relit.image);
+    gl = std::move(relit.summary);
+  } else {
+    radiance = relight::unit_albedo_exit_radiance(baked.transfer, lighting);
+  }
   const double seconds = seconds_since(start);
-  if (!options.output.empty()) write_view(options, baked, environment, radiance);
+  if (view && !image)
+    image = relight::render_view(baked.scene, radiance, view->camera, view->settings, view->background);
+  if (!options.output.empty()) write_view(options, baked, environment, *std::move(image));
   if (!options.vertices.empty()) write_output(options.vertices, csv_of(baked.scene, radiance));
-  write_json(options.json, {{"input", options.input},
+  nlohmann::json summary = {{"input", options.input},
                             {"environment", environment.name},
                             {"environment_lookup", options.light.lookup},
                             {"bands", baked.transfer.bands},
                             {"transfer", std::string(to_string(baked.transfer.kind))},
                             {"backend", options.backend},
                             {"vertices", baked.transfer.vertices},
-                            {"seconds_lighting", seconds}});
+                            {"seconds_lighting", seconds}};
+  if (!gl.is_null()) summary["gl"] = gl;
+  write_json(options.json, summary);
   return kSuccess;
 }
 
@@ -107,7 +131,8 @@ void register_relight(CLI::App& app, Action& chosen) {
   add_whole_number(*verb, "--spp", options->spp, {1, 4096},
                    "camera rays a pixel, rounded up to a square number (default 16)");
   verb->add_option("--backend", options->backend, "what multiplies light and transfer")
-      ->check(CLI::IsMember({"cpu"}));
+      ->check(CLI::IsMember({"cpu", "gl"}));
+  add_gl_options(*verb, options->gl);
   add_threads(*verb, options->threads);
   add_output(*verb, options->output, "OpenEXR image to write");
   verb->add_option("--vertices", options->vertices,
