@@ -122,6 +122,8 @@ void validate(const Compressed& compressed, const std::string& where) {
           fmt::format("clusters: expected 1 to {}, got {}", kMaxClusters, compressed.clusters));
   require(compressed.dimension >= 1 && components <= compressed.dimension, where,
           fmt::format("{} components for vectors of {} numbers", components, compressed.dimension));
+  require(compressed.method != Method::pca || clusters == 1, where, "pca has one cluster");
+  require(compressed.method != Method::vq || components == 0, where, "vq has no components");
   std::size_t codes = 0;
   for (const int bits : compressed.bits) {
     require(bits == 4 || bits == 8 || bits == 16 || bits == 32, where,

@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "prt/relight/cluster_blocks.hpp"
 #include "prt/relight/cpu.hpp"
 #include "prt/transfer/baked_file.hpp"
 #include "reference/base/error.hpp"
@@ -69,6 +70,12 @@ void write_view(const Options& options, const transfer::Baked& baked, const ligh
   image::write_exr(options.output, image);
 }
 
+std::vector<Rgb> exit_radiance(const transfer::Baked& baked, const sh::ShRgb& lighting, int threads) {
+  if (!baked.compressed) return relight::unit_albedo_exit_radiance(baked.transfer, lighting);
+  return relight::unit_albedo_exit_radiance(relight::make_cluster_blocks(*baked.compressed, baked.transfer),
+                                            lighting, threads);
+}
+
 int run(const Options& options) {
   if (options.output.empty() && options.vertices.empty())
     throw InputError("relight: nothing to do: give -o OUT.exr or --vertices OUT.csv");
@@ -80,7 +87,7 @@ int run(const Options& options) {
   const light::Environment environment = load(options.light);
   const auto start = std::chrono::steady_clock::now();
   const sh::ShRgb lighting = sh::project_radiance(environment, baked.transfer.bands);
-  const std::vector<Rgb> radiance = relight::unit_albedo_exit_radiance(baked.transfer, lighting);
+  const std::vector<Rgb> radiance = exit_radiance(baked, lighting, options.threads);
   const double seconds = seconds_since(start);
   if (!options.output.empty()) write_view(options, baked, environment, radiance);
   if (!options.vertices.empty()) write_output(options.vertices, csv_of(baked.scene, radiance));
