@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "prt/compress/block.hpp"
 #include "prt/sh/basis.hpp"
 #include "prt/sh/lighting.hpp"
 #include "reference/base/error.hpp"
@@ -58,16 +59,45 @@ Kind kind_of(const std::string& text, const std::string& file) {
   }
 }
 
-Transfer parse(const nlohmann::json& json, const std::string& bytes, const std::string& file) {
+void require_vertices(const Transfer& transfer, std::size_t scene_vertices, const std::string& file) {
+  if (transfer.vertices == scene_vertices) return;
+  throw InputError(
+      fmt::format("{}: the transfer has {} vertices, the scene {}", file, transfer.vertices, scene_vertices));
+}
+
+void require_same_shape(const compress::Compressed& compressed, const Transfer& transfer,
+                        const std::string& file) {
+  if (compressed.vertices == transfer.vertices &&
+      compressed.vertices * compressed.dimension == transfer.coefficients.size()) {
+    return;
+  }
+  throw InputError(
+      fmt::format("{}: the compressed transfer has {} vertices of {} numbers, the transfer {} numbers in all",
+                  file, compressed.vertices, compressed.dimension, transfer.coefficients.size()));
+}
+
+/// Reads a compressed transfer where there is one; whether the vertices are the scene's is checked before, because a few bytes can
+/// stand for any number of them.
+std::optional<compress::Compressed> parse_compressed(const nlohmann::json& json, const std::string& bytes,
+                                                     std::size_t scene_vertices, const std::string& file,
+                                                     Transfer& transfer) {
+  if (json["compression"] == "none") return std::nullopt;
+  require_vertices(transfer, scene_vertices, file);
+  const auto dimension = static_cast<std::size_t>(sh::coefficient_count(transfer.bands) * transfer.channels);
+  auto compressed = compress::parse_block(json, bytes, transfer.vertices, dimension, file);
+  transfer.coefficients = compress::decode(compressed);
+  return compressed;
+}
+
+Baked parse(const nlohmann::json& json, const std::string& bytes, scene::Scene scene,
+            const std::string& file) {
   const int version = field<int>(json, "version", file);
   if (version != kVersion)
     throw InputError(fmt::format("{}: transfer version {}, this program reads {}", file, version, kVersion));
   const auto convention = field<std::string>(json, "convention", file);
   if (convention != sh::kConventionName)
     throw InputError(fmt::format("{}: unknown SH convention \"{}\"", file, convention));
-  const auto compression = field<std::string>(json, "compression", file);
-  if (compression != "none")
-    throw InputError(fmt::format("{}: unknown compression \"{}\"", file, compression));
+  (void)field<std::string>(json, "compression", file);
   Transfer transfer;
   transfer.bands = field<int>(json, "bands", file);
   transfer.kind = kind_of(field<std::string>(json, "transfer", file), file);
@@ -81,6 +111,9 @@ Transfer parse(const nlohmann::json& json, const std::string& bytes, const std::
   }
   if (transfer.channels != 1 && transfer.channels != 3)
     throw InputError(fmt::format("{}: channels: expected 1 or 3, got {}", file, transfer.channels));
+  if (auto compressed = parse_compressed(json, bytes, scene.positions.size(), file, transfer)) {
+    return {std::move(scene), std::move(transfer), std::move(compressed)};
+  }
   // In units of one vertex, so that no hostile count can overflow.
   const auto per_vertex =
       static_cast<std::size_t>(sh::coefficient_count(transfer.bands) * transfer.channels) * sizeof(float);
@@ -97,33 +130,35 @@ Transfer parse(const nlohmann::json& json, const std::string& bytes, const std::
     transfer.standard_errors.resize(size / sizeof(float));
     std::memcpy(transfer.standard_errors.data(), bytes.data() + size, size);
   }
-  return transfer;
+  return {std::move(scene), std::move(transfer)};
 }
 
 }  // namespace
 
 void save_baked(const std::filesystem::path& path, const Baked& baked) {
   validate(baked.transfer, path.string());
-  if (baked.transfer.vertices != baked.scene.positions.size()) {
-    throw InputError(fmt::format("{}: the transfer has {} vertices, the scene {}", path.string(),
-                                 baked.transfer.vertices, baked.scene.positions.size()));
-  }
+  require_vertices(baked.transfer, baked.scene.positions.size(), path.string());
+  nlohmann::json json = describe(baked.transfer);
   std::string bytes;
-  append(bytes, baked.transfer.coefficients);
-  append(bytes, baked.transfer.standard_errors);
-  scene::save_glb(baked.scene, path, {{kExtension, describe(baked.transfer), std::move(bytes)}});
+  if (baked.compressed) {
+    compress::validate(*baked.compressed, path.string());
+    require_same_shape(*baked.compressed, baked.transfer, path.string());
+    compress::describe_block(*baked.compressed, json);
+    bytes = compress::to_block(*baked.compressed);
+  } else {
+    append(bytes, baked.transfer.coefficients);
+    append(bytes, baked.transfer.standard_errors);
+  }
+  scene::save_glb(baked.scene, path, {{kExtension, std::move(json), std::move(bytes)}});
 }
 
 Baked load_baked(const std::filesystem::path& path) {
   const std::string file = path.string();
   const std::optional<scene::GlbExtension> extension = scene::read_glb_extension(path, kExtension);
   if (!extension) throw InputError(file + ": holds no baked transfer (write one with `plumbline bake`)");
-  Baked baked{scene::load_scene(file), parse(extension->json, extension->bytes, file)};
+  Baked baked = parse(extension->json, extension->bytes, scene::load_scene(file), file);
   validate(baked.transfer, file);
-  if (baked.transfer.vertices != baked.scene.positions.size()) {
-    throw InputError(fmt::format("{}: the transfer has {} vertices, the scene {}", file,
-                                 baked.transfer.vertices, baked.scene.positions.size()));
-  }
+  require_vertices(baked.transfer, baked.scene.positions.size(), file);
   return baked;
 }
 

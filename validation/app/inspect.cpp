@@ -46,6 +46,19 @@ nlohmann::json vectors_of(const transfer::Transfer& transfer, const std::vector<
   return result;
 }
 
+/// What a compressed file holds beside, or in the place of, the rest.
+nlohmann::json description(const compress::Compressed& compressed) {
+  return {{"compression", std::string(to_string(compressed.method))},
+          {"clustering", compressed.is_iterative ? "iterative" : "static"},
+          {"clusters", compressed.clusters},
+          {"components", compressed.components()},
+          {"bits", compressed.bits},
+          {"error", compressed.relative_error},
+          {"clustering_error", compressed.clustering_relative_error},
+          {"bake_error", compressed.bake_relative_error},
+          {"bytes_per_vertex", compress::bytes_per_vertex(compressed)}};
+}
+
 nlohmann::json description(const transfer::Baked& baked) {
   const transfer::Transfer& transfer = baked.transfer;
   const std::size_t bytes =
@@ -80,6 +93,7 @@ int run(const Options& options) {
   require_destinations({{"--json", options.json, ""}});
   const transfer::Baked baked = transfer::load_baked(options.input);
   nlohmann::json json = description(baked);
+  if (baked.compressed) json.update(description(*baked.compressed));
   json["transfer_vectors"] = vectors_of(baked.transfer, requested(options, baked.transfer.vertices));
   if (options.json != "-") write_output("-", text_of(options.input, json));
   write_json(options.json, json);

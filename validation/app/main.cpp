@@ -13,9 +13,9 @@ namespace {
 
 void register_verbs(CLI::App& app, Action& action) {
   for (const Register add :
-       {register_render, register_merge, register_gather, register_project, register_bake, register_relight,
-        register_inspect, register_compare, register_validate, register_bench, register_conform,
-        register_identify, register_conventions, register_normal_basis, register_scenes}) {
+       {register_render, register_merge, register_gather, register_project, register_bake, register_compress,
+        register_relight, register_inspect, register_compare, register_validate, register_bench,
+        register_conform, register_identify, register_conventions, register_normal_basis, register_scenes}) {
     add(app, action);
   }
 }

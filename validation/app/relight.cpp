@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "prt/relight/cluster_blocks.hpp"
 #include "prt/relight/cpu.hpp"
 #include "prt/transfer/baked_file.hpp"
 #include "reference/base/error.hpp"
@@ -76,6 +77,12 @@ void write_view(const Options& options, const transfer::Baked& baked, const ligh
   image::write_exr(options.output, image);
 }
 
+std::vector<Rgb> exit_radiance(const transfer::Baked& baked, const sh::ShRgb& lighting, int threads) {
+  if (!baked.compressed) return relight::unit_albedo_exit_radiance(baked.transfer, lighting);
+  return relight::unit_albedo_exit_radiance(relight::make_cluster_blocks(*baked.compressed, baked.transfer),
+                                            lighting, threads);
+}
+
 int run(const Options& options) {
   require_valid(options.gl, options.backend);
   if (options.output.empty() && options.vertices.empty() && !options.gl.is_audited)
@@ -99,7 +106,7 @@ int run(const Options& options) {
     image = std::move(relit.image);
     gl = std::move(relit.summary);
   } else {
-    radiance = relight::unit_albedo_exit_radiance(baked.transfer, lighting);
+    radiance = exit_radiance(baked, lighting, options.threads);
   }
   const double seconds = seconds_since(start);
   if (view && !image)

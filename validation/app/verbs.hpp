@@ -10,6 +10,7 @@ void register_merge(CLI::App& app, Action& chosen);
 void register_gather(CLI::App& app, Action& chosen);
 void register_project(CLI::App& app, Action& chosen);
 void register_bake(CLI::App& app, Action& chosen);
+void register_compress(CLI::App& app, Action& chosen);
 void register_relight(CLI::App& app, Action& chosen);
 void register_inspect(CLI::App& app, Action& chosen);
 void register_compare(CLI::App& app, Action& chosen);
