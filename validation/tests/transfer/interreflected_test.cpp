@@ -320,9 +320,11 @@ TEST(IterativeTransfer, RefusesLightThatHardlyLeaves) {
     scene.triangle_materials.push_back(0);
   }
   scene::Mesh wall = scene::make_grid({-1, -1, 1}, {0, 2, 0}, {2, 0, 0}, 10, 10);
-  wall.triangles.resize(wall.triangles.size() - 2);
+  wall.triangles.erase(wall.triangles.begin() + 90, wall.triangles.begin() + 92);  // a cell near the middle
   scene::append(scene, wall, 0);
-  EXPECT_THROW((void)bake(scene, settings_of(Solver::iterative, 1, 1024)), InputError);
+  BakeSettings endless = settings_of(Solver::iterative, 1, 1024);
+  endless.threads = 1;
+  EXPECT_THROW((void)bake(scene, endless), InputError);
   EXPECT_NO_THROW((void)bake(scene, settings_of(Solver::iterative, 1, 64, 3)));
 }
 
@@ -372,6 +374,7 @@ TEST(InterreflectedTransfer, StandardErrorsAreHonest) {
   constexpr std::size_t kSeeds = 200;
   for (const Solver solver : {Solver::traced, Solver::iterative}) {
     BakeSettings settings = settings_of(solver, 2, 256, 4);
+    settings.threads = 1;  // so little work that handing it out takes longer
     std::vector<Transfer> bakes;
     for (settings.seed = 0; settings.seed < kSeeds; ++settings.seed) bakes.push_back(bake(scene, settings));
     std::vector<double> p;
@@ -407,7 +410,7 @@ TEST(InterreflectedTransfer, BacksOfDoubleSidedSurfacesReflect) {
     const auto first = scene.positions.size();
     scene::append(scene, scene::make_grid({-0.02, -0.99, 0.02}, {0.04, 0, 0}, {0, 0, -0.04}, 1, 1), plate);
     for (const Solver solver : {Solver::traced, Solver::iterative}) {
-      const Transfer baked = bake(scene, settings_of(solver, 1, 1 << 12, 2, 3));
+      const Transfer baked = bake(scene, settings_of(solver, 1, 1 << 10, 2, 3));
       for (std::size_t k = 0; k < 3; ++k) {
         double mean = 0.0;
         double error = 0.0;
