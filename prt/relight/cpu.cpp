@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <span>
 
+#include "prt/relight/dot_kernels.hpp"
 #include "prt/relight/screen_triangle.hpp"
+#include "prt/sh/basis.hpp"
 #include "reference/base/error.hpp"
 #include "reference/base/parallel.hpp"
 #include "reference/trace/ray_caster.hpp"
@@ -14,12 +17,14 @@
 namespace plumbline::relight {
 namespace {
 
-double dot_channel(std::span<const float> transfer, const sh::ShRgb& lighting, int channel) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < transfer.size(); ++i) {
-    sum += static_cast<double>(transfer[i]) * lighting.coefficients[i][channel];
+/// r, g, b of the first `count` coefficients, rounded.
+std::vector<float> rounded_lights(const sh::ShRgb& lighting, std::size_t count) {
+  std::vector<float> lights;
+  lights.reserve(3 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (int c = 0; c < 3; ++c) lights.push_back(static_cast<float>(lighting.coefficients[i][c]));
   }
-  return sum;
+  return lights;
 }
 
 /// Everything one camera ray adds to its pixel.
@@ -51,16 +56,39 @@ Seen look(const trace::RayCaster& caster, const scene::Scene& scene,
 
 }  // namespace
 
-std::vector<Rgb> unit_albedo_exit_radiance(const transfer::Transfer& transfer, const sh::ShRgb& lighting) {
+// Every term carries the rounding of its light and of at most n^2 additions and products (a product that is
+// fused with its addition, one less): (1 + u)^(n^2 + 1) - 1 of its size in all, whatever the order of the sum
+// (Higham 2002, Accuracy and Stability of Numerical Algorithms, section 3.1), u = 2^-24.
+void unit_albedo_exit_radiance(const TransferBlocks& transfer, const sh::ShRgb& lighting, std::span<Rgb> out,
+                               int threads) {
   if (lighting.bands < transfer.bands) {
     throw InputError(
         fmt::format("lighting: {} bands are fewer than the transfer's {}", lighting.bands, transfer.bands));
   }
+  if (out.size() != transfer.vertices)
+    throw InputError(fmt::format("relight: {} places for {} vertices", out.size(), transfer.vertices));
+  static_assert(sizeof(Rgb) == 3 * sizeof(float));
+  const auto count = static_cast<std::size_t>(sh::coefficient_count(transfer.bands));
+  const std::size_t stride = count * static_cast<std::size_t>(transfer.channels) * kBlockVertices;
+  const std::vector<float> lights = rounded_lights(lighting, count);
+  const auto dot = transfer.channels == 3 ? &dot_rgb : &dot_gray;
+  const std::size_t blocks = (transfer.vertices + kBlockVertices - 1) / kBlockVertices;
+  // Enough for a thread to be worth its start, few enough to share out evenly.
+  const std::size_t share = std::max<std::size_t>(4, (256 << 10) / (stride * sizeof(float)));
+  parallel_for((blocks + share - 1) / share, threads, [&](std::size_t task) {
+    const std::size_t first = task * share;
+    const std::size_t number = std::min(share, blocks - first);
+    const std::size_t vertices =
+        std::min(number * kBlockVertices, transfer.vertices - first * kBlockVertices);
+    dot({lights.data(), count, transfer.coefficients.data() + first * stride, number}, vertices,
+        &out[first * kBlockVertices].x);
+  });
+}
+
+std::vector<Rgb> unit_albedo_exit_radiance(const transfer::Transfer& transfer, const sh::ShRgb& lighting,
+                                           int threads) {
   std::vector<Rgb> result(transfer.vertices);
-  for (std::size_t v = 0; v < result.size(); ++v) {
-    for (int c = 0; c < 3; ++c)
-      result[v][c] = static_cast<float>(dot_channel(transfer.vector(v, c), lighting, c));
-  }
+  unit_albedo_exit_radiance(make_blocks(transfer, threads), lighting, result, threads);
   return result;
 }
 

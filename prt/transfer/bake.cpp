@@ -4,82 +4,139 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 
 #include "prt/sh/basis.hpp"
 #include "prt/sh/zonal.hpp"
-#include "prt/transfer/directions.hpp"
+#include "prt/transfer/iterative.hpp"
+#include "prt/transfer/point_baker.hpp"
+#include "prt/transfer/reflecting.hpp"
 #include "reference/base/error.hpp"
 #include "reference/base/parallel.hpp"
 
 namespace plumbline::transfer {
 namespace {
 
-// Independent shifts of the point set; the spread of their means is the standard error.
-constexpr int kShifts = 16;
+constexpr std::size_t kBlock = 64;  // vertices a task
 
 void require_valid(const BakeSettings& settings) {
   sh::require_bands(settings.bands);
-  if (settings.kind == Kind::interreflected) {
-    throw InputError("transfer: interreflected cannot be baked by this version; unshadowed and shadowed can");
+  if (settings.samples < kSets || settings.samples > (1 << 26))
+    throw InputError(fmt::format("samples: expected {} to {}, got {}", kSets, 1 << 26, settings.samples));
+  if (settings.max_bounces < 0)
+    throw InputError(fmt::format("bounces: expected 0 or more, got {}", settings.max_bounces));
+  if (settings.kept_terms < 0)
+    throw InputError(fmt::format("terms: expected 0 or more to keep, got {}", settings.kept_terms));
+}
+
+/// How many terms there are to keep.
+int terms_to_keep(const BakeSettings& settings) {
+  const int bounces = settings.kind == Kind::interreflected ? settings.max_bounces : 0;
+  return settings.kept_terms <= bounces ? settings.kept_terms : bounces + 1;
+}
+
+std::size_t coefficients(int bands) {
+  return static_cast<std::size_t>(sh::coefficient_count(bands));
+}
+
+DirectionSampler make_sampler(const BakeSettings& settings) {
+  return {settings.method.sampling, settings.method.directions, settings.seed,
+          static_cast<std::size_t>(settings.samples / kSets)};
+}
+
+/// One of the parts that PointBaker gives.
+PointTransfer part_of(const SetStatistics& statistics, std::size_t part, std::size_t size) {
+  PointTransfer result{std::vector<double>(size), std::vector<double>(size)};
+  for (std::size_t i = 0; i < size; ++i) {
+    result.coefficients[i] = statistics.mean[part * size + i];
+    result.standard_errors[i] = statistics.standard_error(part * size + i);
   }
-  if (settings.samples < kShifts || settings.samples > (1 << 26)) {
-    throw InputError(fmt::format("samples: expected {} to {}, got {}", kShifts, 1 << 26, settings.samples));
+  return result;
+}
+
+/// Puts a part into row `vertex` of two arrays.
+void store(const SetStatistics& statistics, std::size_t part, std::size_t size, std::size_t vertex,
+           std::vector<float>& values, std::vector<float>& errors) {
+  for (std::size_t i = 0; i < size; ++i) {
+    values[vertex * size + i] = static_cast<float>(statistics.mean[part * size + i]);
+    errors[vertex * size + i] = static_cast<float>(statistics.standard_error(part * size + i));
   }
 }
 
-/// y_i summed over the unblocked directions of one shift.
-struct VisibleSum {
-  const trace::RayCaster& caster;
-  const trace::SurfacePoint& point;
-  const sh::Basis<double>& basis;
-  std::vector<double> values;  // scratch
+/// Calls body(first vertex, end) for blocks of vertices on all threads.
+template <class Body>
+void for_vertices(std::size_t vertices, const BakeSettings& settings, const Body& body) {
+  const std::size_t blocks = (vertices + kBlock - 1) / kBlock;
+  std::atomic<std::size_t> done{0};
+  parallel_for(blocks, settings.threads, [&](std::size_t block) {
+    body(block * kBlock, std::min(vertices, (block + 1) * kBlock));
+    if (settings.progress)
+      settings.progress(static_cast<double>(done.fetch_add(1) + 1) / static_cast<double>(blocks));
+  });
+}
 
-  VisibleSum(const trace::RayCaster& c, const trace::SurfacePoint& p, const sh::Basis<double>& b)
-      : caster(c), point(p), basis(b), values(static_cast<std::size_t>(b.coefficient_count())) {}
-
-  void add(const Vec3d& direction, std::vector<double>& sum) {
-    const Vec3 ray_direction = glm::normalize(Vec3(direction));
-    if (!(glm::dot(ray_direction, point.geometric_normal) > 0.0F))
-      return;  // the surface itself is in the way
-    if (caster.is_occluded({trace::ray_origin(point, ray_direction), ray_direction})) return;
-    basis.evaluate(direction.x, direction.y, direction.z, values);
-    for (std::size_t i = 0; i < values.size(); ++i) sum[i] += values[i];
-  }
-};
-
-PointTransfer shadowed_at(const trace::RayCaster& caster, const trace::SurfacePoint& point,
-                          const sh::Basis<double>& basis, int samples, std::uint64_t seed,
-                          std::uint64_t stream) {
-  const auto count = static_cast<std::size_t>(basis.coefficient_count());
-  std::vector<double> sum(count, 0.0);
-  std::vector<double> squares(count, 0.0);
-  std::vector<double> shift_sum(count);
-  VisibleSum visible(caster, point, basis);
-  // The same number of points for every shift: the few that are left over are not used.
-  const int per_shift = samples / kShifts;
-  for (std::uint32_t r = 0; r < kShifts; ++r) {
-    std::fill(shift_sum.begin(), shift_sum.end(), 0.0);
-    const glm::dvec2 shift = random_shift(seed, stream, r);
-    for (int s = 0; s < per_shift; ++s) {
-      visible.add(cosine_direction(Vec3d(point.shading_normal),
-                                   shifted_lattice_point(static_cast<std::uint64_t>(s), shift)),
-                  shift_sum);
+void bake_unshadowed(const std::vector<trace::SurfacePoint>& points, const BakeSettings& settings,
+                     Transfer& result) {
+  const std::size_t count = coefficients(result.bands);
+  result.coefficients.resize(result.vertices * count);
+  for_vertices(result.vertices, settings, [&](std::size_t first, std::size_t end) {
+    for (std::size_t v = first; v < end; ++v) {
+      const std::vector<double> exact = unshadowed_transfer(result.bands, points[v].shading_normal);
+      for (std::size_t i = 0; i < count; ++i)
+        result.coefficients[v * count + i] = static_cast<float>(exact[i]);
     }
-    for (std::size_t i = 0; i < count; ++i) {
-      const double mean = shift_sum[i] / per_shift;
-      sum[i] += mean;
-      squares[i] += mean * mean;
+  });
+}
+
+void bake_points(const PointWork& work, const std::vector<trace::SurfacePoint>& points,
+                 const BakeSettings& settings, Transfer& result) {
+  const std::size_t size = coefficients(result.bands) * static_cast<std::size_t>(result.channels);
+  result.coefficients.resize(result.vertices * size);
+  result.standard_errors.resize(result.coefficients.size());
+  result.terms.assign(static_cast<std::size_t>(work.kept_terms),
+                      {result.coefficients, result.standard_errors});
+  for_vertices(result.vertices, settings, [&](std::size_t first, std::size_t end) {
+    PointBaker baker(work);
+    for (std::size_t v = first; v < end; ++v) {
+      const SetStatistics statistics = baker.run(points[v], v);
+      store(statistics, 0, size, v, result.coefficients, result.standard_errors);
+      for (std::size_t k = 0; k < result.terms.size(); ++k)
+        store(statistics, k + 1, size, v, result.terms[k].coefficients, result.terms[k].standard_errors);
     }
+  });
+}
+
+/// Whether the three channels of all vectors are the same bits.
+bool is_gray(const std::vector<float>& values, std::size_t count) {
+  for (std::size_t row = 0; row < values.size(); row += 3 * count) {
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(row);
+    const auto step = static_cast<std::ptrdiff_t>(count);
+    if (!std::equal(first, first + step, first + step) || !std::equal(first, first + step, first + 2 * step))
+      return false;
   }
-  PointTransfer result{std::vector<double>(count), std::vector<double>(count)};
-  for (std::size_t i = 0; i < count; ++i) {
-    const double mean = sum[i] / kShifts;
-    const double variance = std::max(0.0, squares[i] / kShifts - mean * mean) / (kShifts - 1);
-    result.coefficients[i] = mean;
-    result.standard_errors[i] = std::sqrt(variance);
+  return true;
+}
+
+void keep_first_channel(std::vector<float>& values, std::size_t count) {
+  std::size_t kept = 0;
+  for (std::size_t row = 0; row < values.size(); row += 3 * count) {
+    for (std::size_t i = 0; i < count; ++i) values[kept++] = values[row + i];
   }
-  return result;
+  values.resize(kept);
+}
+
+/// Coloured surfaces that nothing sees leave the transfer gray.
+void merge_equal_channels(Transfer& transfer) {
+  const std::size_t count = coefficients(transfer.bands);
+  if (transfer.channels != 3 || !is_gray(transfer.coefficients, count) ||
+      !is_gray(transfer.standard_errors, count))
+    return;
+  transfer.channels = 1;
+  keep_first_channel(transfer.coefficients, count);
+  keep_first_channel(transfer.standard_errors, count);
+  for (Term& term : transfer.terms) {
+    keep_first_channel(term.coefficients, count);
+    keep_first_channel(term.standard_errors, count);
+  }
 }
 
 }  // namespace
@@ -97,48 +154,90 @@ std::vector<double> unshadowed_transfer(int bands, const Vec3& normal) {
 
 PointTransfer shadowed_transfer(const trace::RayCaster& caster, const trace::SurfacePoint& point, int bands,
                                 int samples, std::uint64_t seed, std::uint64_t stream) {
-  return shadowed_at(caster, point, sh::Basis<double>(bands), samples, seed, stream);
+  BakeSettings settings;
+  settings.bands = bands;
+  settings.samples = samples;
+  settings.seed = seed;
+  require_valid(settings);
+  const sh::BatchBasis<float> basis(bands);
+  const DirectionSampler sampler = make_sampler(settings);
+  PointWork work;
+  work.caster = &caster;
+  work.sampler = &sampler;
+  work.basis = &basis;
+  work.seed = seed;
+  return part_of(PointBaker(work).run(point, stream), 0, coefficients(bands));
+}
+
+PointTerms interreflected_transfer(const scene::Scene& scene, const trace::RayCaster& caster,
+                                   const trace::SurfacePoint& point, const BakeSettings& settings,
+                                   std::uint64_t stream) {
+  require_valid(settings);
+  scene::refuse_primitives(scene, "transfer");
+  BakeSettings reflecting = settings;
+  reflecting.kind = Kind::interreflected;
+  const sh::BatchBasis<float> basis(settings.bands);
+  const DirectionSampler sampler = make_sampler(settings);
+  const trace::SurfaceTable surfaces(scene);
+  PointTerms result;
+  result.channels = is_gray(scene) ? 1 : 3;
+  const PointWork work{&caster,
+                       &surfaces,
+                       &sampler,
+                       &basis,
+                       settings.seed,
+                       settings.method.directions,
+                       result.channels,
+                       settings.max_bounces,
+                       terms_to_keep(reflecting)};
+  const SetStatistics statistics = PointBaker(work).run(point, stream);
+  const std::size_t size = coefficients(settings.bands) * static_cast<std::size_t>(result.channels);
+  result.total = part_of(statistics, 0, size);
+  for (int k = 0; k < work.kept_terms; ++k)
+    result.terms.push_back(part_of(statistics, static_cast<std::size_t>(k) + 1, size));
+  return result;
 }
 
 Transfer bake(const scene::Scene& scene, const BakeSettings& settings) {
   require_valid(settings);
   scene::refuse_primitives(scene, "transfer");
-  const bool is_traced = settings.kind != Kind::unshadowed;
-  const auto count = static_cast<std::size_t>(sh::coefficient_count(settings.bands));
+  const bool is_interreflected = settings.kind == Kind::interreflected;
   Transfer result;
   result.bands = settings.bands;
   result.kind = settings.kind;
   result.vertices = scene.positions.size();
   result.seed = settings.seed;
-  result.coefficients.resize(result.vertices * count);
-  if (is_traced) {
-    result.samples = settings.samples / kShifts * kShifts;
-    result.standard_errors.resize(result.coefficients.size());
-  }
-  const trace::RayCaster caster(scene);
+  result.method = settings.method;
   const std::vector<trace::SurfacePoint> points = trace::vertex_points(scene);
-  const sh::Basis<double> basis(settings.bands);
-  constexpr std::size_t kBlock = 64;
-  const std::size_t blocks = (result.vertices + kBlock - 1) / kBlock;
-  std::atomic<std::size_t> done{0};
-  parallel_for(blocks, settings.threads, [&](std::size_t block) {
-    const std::size_t end = std::min(result.vertices, (block + 1) * kBlock);
-    for (std::size_t v = block * kBlock; v < end; ++v) {
-      PointTransfer point;
-      if (is_traced) {
-        point = shadowed_at(caster, points[v], basis, settings.samples, settings.seed, v);
-        std::copy(point.standard_errors.begin(), point.standard_errors.end(),
-                  result.standard_errors.begin() + static_cast<std::ptrdiff_t>(v * count));
-      } else {
-        point.coefficients = unshadowed_transfer(settings.bands, points[v].shading_normal);
-      }
-      std::transform(point.coefficients.begin(), point.coefficients.end(),
-                     result.coefficients.begin() + static_cast<std::ptrdiff_t>(v * count),
-                     [](double value) { return static_cast<float>(value); });
-    }
-    if (settings.progress)
-      settings.progress(static_cast<double>(done.fetch_add(1) + 1) / static_cast<double>(blocks));
-  });
+  if (settings.kind == Kind::unshadowed) {
+    bake_unshadowed(points, settings, result);
+    return result;
+  }
+  const DirectionSampler sampler = make_sampler(settings);
+  const sh::BatchBasis<float> basis(settings.bands);
+  const trace::RayCaster caster(scene);
+  const trace::SurfaceTable surfaces(scene);
+  result.samples = static_cast<std::int64_t>(sampler.set_size()) * kSets;
+  result.bounces = is_interreflected ? settings.max_bounces : 0;
+  result.channels = is_interreflected && !is_gray(scene) ? 3 : 1;
+  const int kept = terms_to_keep(settings);
+  if (is_interreflected && settings.method.solver == Solver::iterative) {
+    solve_iteratively({&scene, &caster, &surfaces, &sampler, &basis, &points, settings.max_bounces, kept,
+                       settings.threads, settings.progress},
+                      result);
+  } else {
+    const PointWork work{&caster,
+                         is_interreflected ? &surfaces : nullptr,
+                         &sampler,
+                         &basis,
+                         settings.seed,
+                         settings.method.directions,
+                         result.channels,
+                         result.bounces,
+                         kept};
+    bake_points(work, points, settings, result);
+  }
+  merge_equal_channels(result);
   return result;
 }
 

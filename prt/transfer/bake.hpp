@@ -23,16 +23,37 @@ struct BakeSettings {
   std::uint64_t seed = 0;
   int threads = 0;  // 0 = all there are; never changes the result
   std::function<void(double fraction)> progress;
+  Method method;
+  // Of interreflected transfer:
+  int max_bounces = kAllBounces;
+  int kept_terms = 0;  // bounces 0 … kept_terms-1 are kept apart, as far as there are any
 };
 
-/// T_i = (1/pi) integral y_i(w) V(w) max(0, n.w) dw at every vertex. Unshadowed (V = 1) has the closed form
-/// T_lm = A_l y_lm(n) / pi [3]; shadowed is the mean of y_i V over cosine-distributed directions [2], each
-/// vertex with its own randomly shifted point set, so that the error of one says nothing of its neighbour's.
-/// @throws InputError for bands or samples out of range, a kind that cannot be baked, or a scene with exact
-/// spheres or discs: transfer lives at vertices.
+/// Transfer vectors of every vertex (CONVENTIONS.md#radiometry): T_0 for light that comes straight from afar,
+///   T_0,i = (1/pi) integral y_i(w) V(w) max(0, n.w) dw,
+/// and with interreflection the sum of T_k for k up to the last bounce,
+///   T_k,i(p) = (1/pi) integral (1 - V(w)) albedo(q) T_k-1,i(q) max(0, n.w) dw,   q = what w meets from p.
+/// The receiver's own albedo is not in it. A back face reflects nothing unless it is double-sided; it then does with the
+/// transfer of its own side, which is computed for that and not kept: the transfer of a vertex is that of the side its
+/// normal is on. Albedos of textures and vertex colours are those at q.
+///
+/// Unshadowed (V = 1) has the closed form T_lm = A_l y_lm(n) / pi [3]. Otherwise directions come in 16 independent sets, whose
+/// spread gives the standard errors; with Method::iterative these 16 are solved one by one, so that the errors of what is
+/// gathered are in them too. What they do not hold there: interpolation, and a bias at returns to the same vertex
+/// (bounces 2 and more), of the order of one over the directions in a set, times how much of such light there is.
+///
+/// With kAllBounces the walks of the traced solver end by Russian roulette. The iterative one stops when a bound on all that
+/// is left is below 1e-4 of a white furnace's T_00 (Transfer::remainder).
+///
+/// Three channels where a surface that could reflect is not gray and they differ, else one.
+/// @throws InputError for bands, samples or bounces out of range, a scene with exact spheres or discs (transfer lives at
+/// vertices), or when light is still bouncing after kMostIterations of the iterative solver.
 [[nodiscard]] Transfer bake(const scene::Scene& scene, const BakeSettings& settings);
 
-/// Coefficients of one point, in double, for checks: bands^2 values and their standard errors.
+/// Bounces that Method::iterative computes at most where none is named.
+inline constexpr int kMostIterations = 1000;
+
+/// Coefficients of one point, in double, for checks: values and their standard errors, [channel][bands^2].
 struct PointTransfer {
   std::vector<double> coefficients;
   std::vector<double> standard_errors;
@@ -41,5 +62,16 @@ struct PointTransfer {
 [[nodiscard]] PointTransfer shadowed_transfer(const trace::RayCaster& caster,
                                               const trace::SurfacePoint& point, int bands, int samples,
                                               std::uint64_t seed, std::uint64_t stream);
+
+/// Interreflected transfer of any point by the traced solver, `settings.kind` or `solver` whatever they are.
+struct PointTerms {
+  int channels = 1;
+  PointTransfer total;
+  std::vector<PointTransfer> terms;  // settings.kept_terms, or fewer where max_bounces is lower
+};
+/// @throws InputError as bake() does
+[[nodiscard]] PointTerms interreflected_transfer(const scene::Scene& scene, const trace::RayCaster& caster,
+                                                 const trace::SurfacePoint& point,
+                                                 const BakeSettings& settings, std::uint64_t stream);
 
 }  // namespace plumbline::transfer

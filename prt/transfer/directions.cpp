@@ -1,5 +1,6 @@
 #include "prt/transfer/directions.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace plumbline::transfer {
@@ -28,21 +29,48 @@ glm::dvec2 shifted_lattice_point(std::uint64_t i, const glm::dvec2& shift) {
   return point - glm::floor(point);
 }
 
+std::uint64_t cell_seed(std::uint64_t seed, std::uint64_t cell) {
+  // Steele, Lea & Flood's finaliser of SplitMix64: neighbouring cells share no bits.
+  std::uint64_t z = seed + (cell + 1) * 0x9E3779B97F4A7C15ULL;
+  z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9ULL;
+  z = (z ^ (z >> 27U)) * 0x94D049BB133111EBULL;
+  return z ^ (z >> 31U);
+}
+
+RandomNumbers::RandomNumbers(std::uint64_t seed, std::uint64_t stream, std::uint32_t randomisation)
+    : state_((seed * 0x9E3779B97F4A7C15ULL) ^ (stream * 0xD1B54A32D192ED03ULL + randomisation + 1)) {
+  state_ = state_ * 2 + 1;
+  for (int i = 0; i < 8; ++i) (void)next_random(state_);
+}
+
+double RandomNumbers::next() {
+  return to_unit(next_random(state_));
+}
+
 glm::dvec2 random_shift(std::uint64_t seed, std::uint64_t stream, std::uint32_t randomisation) {
-  std::uint64_t state = (seed * 0x9E3779B97F4A7C15ULL) ^ (stream * 0xD1B54A32D192ED03ULL + randomisation + 1);
-  state = state * 2 + 1;
-  for (int i = 0; i < 8; ++i) (void)next_random(state);
-  const double x = to_unit(next_random(state));
-  return {x, to_unit(next_random(state))};
+  RandomNumbers numbers(seed, stream, randomisation);
+  const double x = numbers.next();
+  return {x, numbers.next()};
+}
+
+std::pair<Vec3d, Vec3d> tangents(const Vec3d& normal) {
+  const Vec3d helper = std::abs(normal.x) < 0.5 ? Vec3d(1.0, 0.0, 0.0) : Vec3d(0.0, 1.0, 0.0);
+  const Vec3d tangent = glm::normalize(glm::cross(helper, normal));
+  return {tangent, glm::cross(normal, tangent)};
+}
+
+Vec3d sphere_direction(const glm::dvec2& u) {
+  const double z = 1.0 - 2.0 * u.y;
+  const double radius = std::sqrt(std::max(0.0, 1.0 - z * z));
+  const double azimuth = 2.0 * kPi * u.x;
+  return {radius * std::cos(azimuth), radius * std::sin(azimuth), z};
 }
 
 Vec3d cosine_direction(const Vec3d& normal, const glm::dvec2& u) {
   const double sine = std::sqrt(u.y);
   const double cosine = std::sqrt(1.0 - u.y);
   const double azimuth = 2.0 * kPi * u.x;
-  const Vec3d helper = std::abs(normal.x) < 0.5 ? Vec3d(1.0, 0.0, 0.0) : Vec3d(0.0, 1.0, 0.0);
-  const Vec3d tangent = glm::normalize(glm::cross(helper, normal));
-  const Vec3d bitangent = glm::cross(normal, tangent);
+  const auto [tangent, bitangent] = tangents(normal);
   return sine * std::cos(azimuth) * tangent + sine * std::sin(azimuth) * bitangent + cosine * normal;
 }
 

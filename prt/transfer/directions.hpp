@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <utility>
 
 #include "reference/base/vector.hpp"
 
@@ -15,6 +17,29 @@ namespace plumbline::transfer {
 
 /// A uniform shift from (seed, stream, randomisation).
 [[nodiscard]] glm::dvec2 random_shift(std::uint64_t seed, std::uint64_t stream, std::uint32_t randomisation);
+
+/// Another seed for each cell of a grid.
+[[nodiscard]] std::uint64_t cell_seed(std::uint64_t seed, std::uint64_t cell);
+
+/// Random numbers in order: a walk's choices.
+class RandomNumbers {
+ public:
+  RandomNumbers(std::uint64_t seed, std::uint64_t stream, std::uint32_t randomisation);
+  /// Uniform in [0, 1).
+  [[nodiscard]] double next();
+
+ private:
+  std::uint64_t state_;
+};
+
+/// The largest float below 1.
+inline constexpr float kBelowOne = 1.0F - std::numeric_limits<float>::epsilon() / 2.0F;
+
+/// Two unit vectors that make a right-handed frame with the unit normal: tangent x bitangent = normal.
+[[nodiscard]] std::pair<Vec3d, Vec3d> tangents(const Vec3d& normal);
+
+/// Uniform over the sphere: z = 1 - 2 u.y, azimuth 2 pi u.x.
+[[nodiscard]] Vec3d sphere_direction(const glm::dvec2& u);
 
 /// Direction of density max(0, n.w) / pi: cos^2 = 1 - u.y, azimuth 2 pi u.x about the unit normal.
 [[nodiscard]] Vec3d cosine_direction(const Vec3d& normal, const glm::dvec2& u);

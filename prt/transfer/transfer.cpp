@@ -9,6 +9,26 @@
 
 namespace plumbline::transfer {
 
+namespace {
+
+void require_sizes(const std::vector<float>& coefficients, const std::vector<float>& standard_errors,
+                   std::size_t expected, const std::string& where) {
+  if (coefficients.size() != expected) {
+    throw InputError(
+        fmt::format("{}: expected {} coefficients, got {}", where, expected, coefficients.size()));
+  }
+  if (!standard_errors.empty() && standard_errors.size() != expected) {
+    throw InputError(
+        fmt::format("{}: expected {} standard errors, got {}", where, expected, standard_errors.size()));
+  }
+  for (std::size_t i = 0; i < expected; ++i) {
+    if (!std::isfinite(coefficients[i]))
+      throw InputError(fmt::format("{}: coefficient {} is not finite", where, i));
+  }
+}
+
+}  // namespace
+
 std::string_view to_string(Kind kind) {
   switch (kind) {
     case Kind::unshadowed:
@@ -29,10 +49,15 @@ Kind kind_from_string(std::string_view text) {
 }
 
 std::span<const float> Transfer::vector(std::size_t vertex, int channel) const {
+  return row_of(coefficients, vertex, channel);
+}
+
+std::span<const float> Transfer::row_of(const std::vector<float>& values, std::size_t vertex,
+                                        int channel) const {
   const auto count = static_cast<std::size_t>(sh::coefficient_count(bands));
   const auto row =
       vertex * static_cast<std::size_t>(channels) + (channels == 1 ? 0U : static_cast<std::size_t>(channel));
-  return std::span<const float>(coefficients).subspan(row * count, count);
+  return std::span<const float>(values).subspan(row * count, count);
 }
 
 void validate(const Transfer& transfer, const std::string& where) {
@@ -45,17 +70,11 @@ void validate(const Transfer& transfer, const std::string& where) {
   }
   const auto expected = transfer.vertices * static_cast<std::size_t>(transfer.channels) *
                         static_cast<std::size_t>(sh::coefficient_count(transfer.bands));
-  if (transfer.coefficients.size() != expected) {
-    throw InputError(
-        fmt::format("{}: expected {} coefficients, got {}", where, expected, transfer.coefficients.size()));
-  }
-  if (!transfer.standard_errors.empty() && transfer.standard_errors.size() != expected) {
-    throw InputError(fmt::format("{}: expected {} standard errors, got {}", where, expected,
-                                 transfer.standard_errors.size()));
-  }
-  for (std::size_t i = 0; i < expected; ++i) {
-    if (!std::isfinite(transfer.coefficients[i]))
-      throw InputError(fmt::format("{}: coefficient {} is not finite", where, i));
+  require_sizes(transfer.coefficients, transfer.standard_errors, expected, where);
+  for (const Term& term : transfer.terms) {
+    require_sizes(term.coefficients, term.standard_errors, expected, where + ": terms");
+    if (term.standard_errors.empty() != transfer.standard_errors.empty())
+      throw InputError(where + ": terms: expected standard errors where the sum has them");
   }
 }
 

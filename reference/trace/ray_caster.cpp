@@ -1,5 +1,6 @@
 #include "reference/trace/ray_caster.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <string>
 
@@ -145,6 +146,54 @@ std::uint32_t RayCaster::occluded(std::span<const Ray> rays) const {
   std::uint32_t result = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) result |= query.tfar[i] < 0.0F ? 1U << i : 0U;
   return result;
+}
+
+#if PLUMBLINE_EMBREE == 4
+
+// Packets of 8 that share their origin.
+void RayCaster::occluded_from(const Vec3& origin, const DirectionArrays& directions,
+                              std::uint8_t* is_hit) const {
+  for (std::size_t first = 0; first < directions.count; first += kMostTogether) {
+    const std::size_t count = std::min(kMostTogether, directions.count - first);
+    Ray rays[kMostTogether];
+    for (std::size_t k = 0; k < count; ++k) {
+      rays[k] = {origin, {directions.x[first + k], directions.y[first + k], directions.z[first + k]}};
+    }
+    const std::uint32_t bits = occluded({rays, count});
+    for (std::size_t k = 0; k < count; ++k) is_hit[first + k] = (bits >> k & 1U) != 0 ? 1 : 0;
+  }
+}
+
+#else
+
+void RayCaster::occluded_from(const Vec3& origin, const DirectionArrays& directions,
+                              std::uint8_t* is_hit) const {
+  constexpr std::size_t kStream = 256;
+  RTCRay queries[kStream];
+  const RTCRay blank = make_ray({origin, Vec3(0.0F)});
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  for (std::size_t first = 0; first < directions.count; first += kStream) {
+    const std::size_t count = std::min(kStream, directions.count - first);
+    for (std::size_t k = 0; k < count; ++k) {
+      queries[k] = blank;
+      queries[k].dir_x = directions.x[first + k];
+      queries[k].dir_y = directions.y[first + k];
+      queries[k].dir_z = directions.z[first + k];
+    }
+    rtcOccluded1M(impl_->scene, &context, queries, static_cast<unsigned>(count), sizeof(RTCRay));
+    for (std::size_t k = 0; k < count; ++k) is_hit[first + k] = queries[k].tfar < 0.0F ? 1 : 0;
+  }
+}
+
+#endif
+
+// Closest hits that spread over a hemisphere gain nothing from packets or streams (plumbline_bench, rays/first_bounce).
+void RayCaster::closest_from(const Vec3& origin, const DirectionArrays& directions, Hit* hits) const {
+  for (std::size_t k = 0; k < directions.count; ++k) {
+    hits[k] =
+        closest_hit({origin, {directions.x[k], directions.y[k], directions.z[k]}}).value_or(Hit{kNoSurface});
+  }
 }
 
 bool RayCaster::is_occluded(const Ray& ray) const {

@@ -1,6 +1,7 @@
 // reference/trace/ray_caster.hpp: the ray query; reference/trace is the only code that knows Embree.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -24,6 +25,17 @@ struct Hit {
   float distance = 0.0F;
 };
 
+/// Unit directions as three arrays of the same length.
+struct DirectionArrays {
+  const float* x = nullptr;
+  const float* y = nullptr;
+  const float* z = nullptr;
+  std::size_t count = 0;
+};
+
+/// Hit::triangle of a ray that met nothing.
+inline constexpr std::uint32_t kNoSurface = std::numeric_limits<std::uint32_t>::max();
+
 /// The bounding volume hierarchy over a scene's triangles, spheres and discs. Both faces of a surface stop a
 /// ray.
 /// Safe to query from many threads.
@@ -43,6 +55,12 @@ class RayCaster {
   /// one where there are four or more (plumbline_bench, rays/).
   static constexpr std::size_t kMostTogether = 8;
   [[nodiscard]] std::uint32_t occluded(std::span<const Ray> rays) const;
+
+  /// Many rays without end from one origin: is_hit[i] is 1 where direction i meets something, else 0. The fastest form there
+  /// is for a bake (plumbline_bench, rays/hemisphere): Embree 3's streams, Embree 4's packets.
+  void occluded_from(const Vec3& origin, const DirectionArrays& directions, std::uint8_t* is_hit) const;
+  /// The same for closest hits; hits[i].triangle is kNoSurface where there is none.
+  void closest_from(const Vec3& origin, const DirectionArrays& directions, Hit* hits) const;
 
  private:
   struct Impl;

@@ -5,6 +5,7 @@
 
 #include "prt/transfer/bake.hpp"
 #include "prt/transfer/baked_file.hpp"
+#include "reference/base/error.hpp"
 #include "validation/app/options.hpp"
 #include "validation/app/verbs.hpp"
 
@@ -16,6 +17,11 @@ struct Options {
   std::string output;
   int bands = 5;
   std::string kind = "shadowed";
+  std::string bounces;
+  std::string solver = "traced";
+  std::string sampling = "qmc";
+  std::string directions = "per-vertex";
+  int kept_terms = 0;
   int samples = 1024;
   std::uint64_t seed = 0;
   int threads = 0;
@@ -32,15 +38,47 @@ void warn_of_lights(const scene::Scene& scene) {
   }
 }
 
+/// Bounces asked of a transfer that has none are a misunderstanding.
+void refuse_bounces(const std::string& kind, const std::string& bounces) {
+  if (kind == "interreflected" || bounces.empty() || bounces == "0") return;
+  throw InputError(fmt::format("--bounces: {} transfer has none; add --transfer interreflected", kind));
+}
+
 transfer::BakeSettings settings_of(const Options& options) {
   transfer::BakeSettings settings;
   settings.bands = options.bands;
   settings.kind = transfer::kind_from_string(options.kind);
   settings.samples = options.samples;
+  settings.method = {transfer::solver_from_string(options.solver),
+                     transfer::sampling_from_string(options.sampling),
+                     transfer::direction_sets_from_string(options.directions)};
+  refuse_bounces(options.kind, options.bounces);
+  settings.max_bounces = parse_bounces(options.bounces.empty() ? "all" : options.bounces);
+  settings.kept_terms = options.kept_terms;
   settings.seed = options.seed;
   settings.threads = options.threads;
   settings.progress = progress_bar("bake");
   return settings;
+}
+
+nlohmann::json bounces_json(int bounces) {
+  return bounces == transfer::kAllBounces ? nlohmann::json("all") : nlohmann::json(bounces);
+}
+
+nlohmann::json summary(const Options& options, const transfer::Transfer& transfer, double seconds) {
+  nlohmann::json json = {{"output", options.output},      {"transfer", options.kind},
+                         {"bands", transfer.bands},       {"bounces", bounces_json(transfer.bounces)},
+                         {"channels", transfer.channels}, {"terms", transfer.terms.size()},
+                         {"vertices", transfer.vertices}, {"samples", transfer.samples},
+                         {"seed", options.seed},          {"seconds", seconds}};
+  if (transfer.kind == transfer::Kind::unshadowed) return json;
+  json["sampling"] = options.sampling;
+  json["directions"] = options.directions;
+  if (transfer.kind == transfer::Kind::interreflected) {
+    json["solver"] = options.solver;
+    json["remainder"] = transfer.remainder;
+  }
+  return json;
 }
 
 void report(const Options& options, const transfer::Transfer& transfer, double seconds) {
@@ -49,14 +87,7 @@ void report(const Options& options, const transfer::Transfer& transfer, double s
                     options.output, options.kind, transfer.vertices, transfer.bands, transfer.samples,
                     seconds));
   }
-  write_json(options.json, {{"output", options.output},
-                            {"transfer", options.kind},
-                            {"bands", transfer.bands},
-                            {"bounces", transfer.bounces},
-                            {"vertices", transfer.vertices},
-                            {"samples", transfer.samples},
-                            {"seed", options.seed},
-                            {"seconds", seconds}});
+  write_json(options.json, summary(options, transfer, seconds));
 }
 
 int run(const Options& options) {
@@ -72,6 +103,23 @@ int run(const Options& options) {
   return kSuccess;
 }
 
+void add_transfer_options(CLI::App& verb, Options& options) {
+  verb.add_option("--transfer", options.kind,
+                  "unshadowed (closed form), shadowed (default) or interreflected")
+      ->check(CLI::IsMember({"unshadowed", "shadowed", "interreflected"}));
+  verb.add_option("--bounces", options.bounces, "of interreflected transfer: 0, 1, 2, ... or all (default)");
+  verb.add_option(
+          "--solver", options.solver,
+          "traced (default): unbiased on any mesh; iterative: less noise, interpolates between vertices")
+      ->check(CLI::IsMember({"traced", "iterative"}));
+  verb.add_option("--sampling", options.sampling,
+                  "qmc (default: shifted lattice), cosine (stratified) or uniform (stratified sphere)")
+      ->check(CLI::IsMember({"qmc", "cosine", "uniform"}));
+  verb.add_option("--directions", options.directions,
+                  "per-vertex (default: errors of neighbours are independent) or shared by all vertices")
+      ->check(CLI::IsMember({"per-vertex", "shared"}));
+}
+
 }  // namespace
 
 void register_bake(CLI::App& app, Action& chosen) {
@@ -80,13 +128,16 @@ void register_bake(CLI::App& app, Action& chosen) {
   add_scene_options(*verb, options->scene);
   add_output(*verb, options->output, "baked file (.prt.glb) to write; any glTF viewer opens it")->required();
   add_bands(*verb, options->bands, "n bands: n^2 coefficients a vertex");
-  verb->add_option("--transfer", options->kind, "unshadowed (closed form) or shadowed (default)")
-      ->check(CLI::IsMember({"unshadowed", "shadowed", "interreflected"}));
+  add_transfer_options(*verb, *options);
   add_whole_number(*verb, "--samples", options->samples, {1}, "directions a vertex (default 1024)");
+  add_whole_number(*verb, "--keep-terms", options->kept_terms, {0},
+                   "keep the first N bounces apart, direct light first (default 0)");
   add_seed(*verb, options->seed);
   add_threads(*verb, options->threads);
   add_json(*verb, options->json, "a summary");
-  verb->footer("Example: plumbline bake builtin:plaza -o plaza.prt.glb --bands 5 --samples 1024");
+  verb->footer(
+      "Example: plumbline bake builtin:plaza -o plaza.prt.glb --bands 5 --transfer interreflected --bounces "
+      "3");
   on_chosen(*verb, options, chosen, &run);
 }
 

@@ -33,15 +33,32 @@ std::vector<std::size_t> requested(const Options& options, std::size_t count) {
   return vertices;
 }
 
+/// Rows r, g, b of a vertex of one of the transfer's arrays.
+nlohmann::json rows_of(const transfer::Transfer& transfer, const std::vector<float>& values,
+                       std::size_t vertex) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (int c = 0; c < 3; ++c) {
+    const std::span<const float> row = transfer.row_of(values, vertex, c);
+    rows.push_back(std::vector<float>(row.begin(), row.end()));
+  }
+  return rows;
+}
+
 nlohmann::json vectors_of(const transfer::Transfer& transfer, const std::vector<std::size_t>& vertices) {
   nlohmann::json result = nlohmann::json::object();
+  for (const std::size_t v : vertices)
+    result[std::to_string(v)] = rows_of(transfer, transfer.coefficients, v);
+  return result;
+}
+
+/// By vertex a list of bounces, each with its rows r, g, b.
+nlohmann::json terms_of(const transfer::Transfer& transfer, const std::vector<std::size_t>& vertices) {
+  nlohmann::json result = nlohmann::json::object();
   for (const std::size_t v : vertices) {
-    nlohmann::json rows = nlohmann::json::array();
-    for (int c = 0; c < 3; ++c) {
-      const std::span<const float> row = transfer.vector(v, c);
-      rows.push_back(std::vector<float>(row.begin(), row.end()));
-    }
-    result[std::to_string(v)] = std::move(rows);
+    nlohmann::json terms = nlohmann::json::array();
+    for (const transfer::Term& term : transfer.terms)
+      terms.push_back(rows_of(transfer, term.coefficients, v));
+    result[std::to_string(v)] = std::move(terms);
   }
   return result;
 }
@@ -63,9 +80,11 @@ nlohmann::json description(const transfer::Baked& baked) {
   const transfer::Transfer& transfer = baked.transfer;
   const std::size_t bytes =
       transfer.vertices == 0 ? 0 : transfer.coefficients.size() * sizeof(float) / transfer.vertices;
+  const bool is_endless = transfer.bounces == transfer::kAllBounces;
   return {{"bands", transfer.bands},
           {"transfer", std::string(to_string(transfer.kind))},
-          {"bounces", transfer.bounces},
+          {"bounces", is_endless ? nlohmann::json("all") : nlohmann::json(transfer.bounces)},
+          {"terms", transfer.terms.size()},
           {"vertices", transfer.vertices},
           {"triangles", baked.scene.triangles.size()},
           {"channels", transfer.channels},
@@ -94,7 +113,9 @@ int run(const Options& options) {
   const transfer::Baked baked = transfer::load_baked(options.input);
   nlohmann::json json = description(baked);
   if (baked.compressed) json.update(description(*baked.compressed));
-  json["transfer_vectors"] = vectors_of(baked.transfer, requested(options, baked.transfer.vertices));
+  const std::vector<std::size_t> vertices = requested(options, baked.transfer.vertices);
+  json["transfer_vectors"] = vectors_of(baked.transfer, vertices);
+  if (!baked.transfer.terms.empty()) json["term_vectors"] = terms_of(baked.transfer, vertices);
   if (options.json != "-") write_output("-", text_of(options.input, json));
   write_json(options.json, json);
   return kSuccess;

@@ -143,8 +143,16 @@ void machine_read(benchmark::State& state) {
   }
   state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations()) * state.range(0));
 }
-// 6,291,456 bytes: an image of 1024 x 512 RGB; 4,718,592: a cube map of 6 x 256 x 256.
-BENCHMARK(machine_read)->Arg(32 << 10)->Arg(512 << 10)->Arg(4718592)->Arg(6291456)->Arg(160 << 20);
+// 6,291,456 bytes: an image of 1024 x 512 RGB; 4,718,592: a cube map of 6 x 256 x 256;
+// 10,000,384 and 30,000,128: 100,000 transfer vectors of 5 bands, gray and RGB.
+BENCHMARK(machine_read)
+    ->Arg(32 << 10)
+    ->Arg(512 << 10)
+    ->Arg(4718592)
+    ->Arg(6291456)
+    ->Arg(10000384)
+    ->Arg(30000128)
+    ->Arg(160 << 20);
 
 /// STREAM's triad a + 3 b; 12 bytes an element are counted.
 void machine_triad(benchmark::State& state) {

@@ -133,7 +133,6 @@ TEST(Bake, RefusesWhatItCannotDo) {
   const scene::Scene scene = scene::make_builtin_scene("corner");
   EXPECT_THROW((void)bake(scene, settings_of(Kind::shadowed, 0)), InputError);
   EXPECT_THROW((void)bake(scene, settings_of(Kind::shadowed, 5, 0)), InputError);
-  EXPECT_THROW((void)bake(scene, settings_of(Kind::interreflected)), InputError);
   const scene::Scene exact = scene::make_builtin_scene("exact-sphere-on-plane");
   EXPECT_THROW((void)bake(exact, settings_of(Kind::unshadowed)), InputError);
 }

@@ -55,6 +55,43 @@ TEST(BakedFile, ComesBackAsItWas) {
   EXPECT_EQ(back.scene.cameras.size(), baked.scene.cameras.size());
 }
 
+TEST(BakedFile, KeepsTermsAndHowTheyCameAbout) {
+  BakeSettings settings;
+  settings.bands = 2;
+  settings.samples = 64;
+  settings.kind = Kind::interreflected;
+  settings.method = {Solver::iterative, Sampling::cosine, DirectionSets::shared};
+  settings.kept_terms = 3;
+  Baked baked{scene::make_builtin_scene("corner"), {}};
+  baked.transfer = bake(baked.scene, settings);
+  ASSERT_EQ(baked.transfer.terms.size(), 3U);
+  save_baked(file("terms.prt.glb"), baked);
+  const Transfer back = load_baked(file("terms.prt.glb")).transfer;
+  EXPECT_EQ(back.terms, baked.transfer.terms);
+  EXPECT_EQ(back.coefficients, baked.transfer.coefficients);
+  EXPECT_EQ(back.bounces, kAllBounces);
+  EXPECT_EQ(back.remainder, baked.transfer.remainder);
+  EXPECT_EQ(back.method.solver, Solver::iterative);
+  EXPECT_EQ(back.method.sampling, Sampling::cosine);
+  EXPECT_EQ(back.method.directions, DirectionSets::shared);
+  // Damage.
+  const std::string whole = read_file(file("terms.prt.glb"));
+  const auto path = file("wrong_terms.prt.glb");
+  for (const auto& [from, to] :
+       {std::pair("\"terms\":3", "\"terms\":4"), std::pair("\"terms\":3", "\"terms\":0"),
+        std::pair("\"terms\":3", "\"terms\":-"), std::pair("\"terms\":3", "\"terms\":9"),
+        std::pair("\"solver\":\"iterative\"", "\"solver\":\"itexative\"")}) {
+    std::string changed = whole;
+    const std::size_t at = changed.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    changed.replace(at, std::string(from).size(), to);
+    write_text_atomically(path, changed);
+    expect_one_line_naming(path);
+  }
+  baked.transfer.terms[1].coefficients.pop_back();
+  EXPECT_THROW(save_baked(path, baked), InputError);
+}
+
 TEST(BakedFile, IsAPlainSceneToOthers) {
   save_baked(file("corner2.prt.glb"), small_bake());
   EXPECT_EQ(scene::load_scene(file("corner2.prt.glb").string()).triangles.size(), 4U);

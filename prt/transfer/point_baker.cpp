@@ -1,0 +1,154 @@
+#include "prt/transfer/point_baker.hpp"
+
+#include <algorithm>
+
+#include "prt/sh/basis.hpp"
+
+namespace plumbline::transfer {
+namespace {
+
+// Bounces that every walk is allowed before roulette may end it, so that the strong ones keep their low noise.
+constexpr int kSafeBounces = 1;
+// A walk between white surfaces ends too.
+constexpr float kLargestSurvival = 0.95F;
+constexpr int kWhiteBounces = 16;  // before that, nothing but its albedos ends a walk
+
+// Choices of walks are other numbers than the shifts of sets.
+constexpr std::uint64_t kWalkSeed = 0xA0761D6478BD642FULL;
+
+trace::DirectionArrays arrays(const Bundle& bundle) {
+  return {bundle.x.data(), bundle.y.data(), bundle.z.data(), bundle.count};
+}
+
+/// Russian roulette: survivors carry what the others leave. The chance is the throughput's own size, so that all survivors
+/// weigh about the same.
+bool survives(Rgb& throughput, int bounce, RandomNumbers& numbers) {
+  if (bounce <= kSafeBounces) return true;
+  float chance = max_component(throughput);
+  if (bounce > kWhiteBounces) chance = std::min(chance, kLargestSurvival);
+  if (chance >= 1.0F) return true;
+  if (!(numbers.next() < static_cast<double>(chance))) return false;
+  throughput /= chance;
+  return true;
+}
+
+}  // namespace
+
+PointBaker::PointBaker(const PointWork& work)
+    : work_(work),
+      size_(static_cast<std::size_t>(work.channels * sh::coefficient_count(work.basis->bands()))),
+      bundle_(DirectionSampler::kMostTogether, work.channels),
+      escaped_(DirectionSampler::kMostTogether, work.channels),
+      basis_sums_(*work.basis, work.channels),
+      is_hit_(bundle_.capacity),
+      hits_(work.surfaces != nullptr ? bundle_.capacity : 0),
+      sums_(size_ * static_cast<std::size_t>(1 + work.kept_terms)) {
+  walks_.reserve(hits_.size());
+}
+
+SetStatistics PointBaker::run(const trace::SurfacePoint& point, std::uint64_t stream) {
+  const std::size_t count = work_.sampler->set_size();
+  const std::uint64_t walk_stream = work_.directions == DirectionSets::shared ? 0 : stream;
+  SetStatistics statistics(sums_.size());
+  for (std::uint32_t set = 0; set < kSets; ++set) {
+    std::fill(sums_.begin(), sums_.end(), 0.0);
+    RandomNumbers numbers(work_.seed ^ kWalkSeed, walk_stream, set);
+    for (std::size_t first = 0; first < count; first += DirectionSampler::kMostTogether) {
+      work_.sampler->draw(
+          point, {stream, set, first, std::min(DirectionSampler::kMostTogether, count - first)}, bundle_);
+      if (work_.surfaces == nullptr) {
+        add_visible(point);
+      } else {
+        add_walks(point, numbers);
+      }
+    }
+    for (std::size_t i = size_; i < sums_.size(); ++i) sums_[i % size_] += sums_[i];
+    statistics.add(sums_, 1.0 / static_cast<double>(count));
+  }
+  return statistics;
+}
+
+void PointBaker::add_visible(const trace::SurfacePoint& point) {
+  if (bundle_.count == 0) return;
+  const Vec3 origin = point.position + point.clearance * point.geometric_normal;
+  work_.caster->occluded_from(origin, arrays(bundle_), is_hit_.data());
+  // What escapes moves to the front, in its order; no branch depends on a ray.
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < bundle_.count; ++k) {
+    bundle_.x[kept] = bundle_.x[k];
+    bundle_.y[kept] = bundle_.y[k];
+    bundle_.z[kept] = bundle_.z[k];
+    for (int c = 0; c < work_.channels; ++c) bundle_.weight(c)[kept] = bundle_.weight(c)[k];
+    kept += is_hit_[k] == 0 ? 1 : 0;
+  }
+  bundle_.count = kept;
+  basis_sums_.add(bundle_, {sums_.data() + (work_.kept_terms > 0 ? size_ : 0), size_});
+}
+
+void PointBaker::add_walks(const trace::SurfacePoint& point, RandomNumbers& numbers) {
+  const Vec3 origin = point.position + point.clearance * point.geometric_normal;
+  work_.caster->closest_from(origin, arrays(bundle_), hits_.data());
+  walks_.clear();
+  for (std::size_t k = 0; k < bundle_.count; ++k) {
+    const Vec3 direction(bundle_.x[k], bundle_.y[k], bundle_.z[k]);
+    const Rgb weight(bundle_.weight(0)[k]);
+    if (hits_[k].triangle == trace::kNoSurface) {
+      keep_escaped(direction, weight);
+    } else {
+      walks_.push_back({hits_[k], direction, weight});
+    }
+  }
+  add_escaped(0);
+  for (int bounce = 1; bounce <= work_.max_bounces && !walks_.empty(); ++bounce) {
+    walk_on(bounce, numbers);
+    add_escaped(bounce);
+  }
+  if (escaped_.count > 0) basis_sums_.add(escaped_, {sums_.data(), size_});
+  escaped_.count = 0;
+}
+
+/// One more bounce of all walks.
+void PointBaker::walk_on(int bounce, RandomNumbers& numbers) {
+  std::size_t alive = 0;
+  for (Walk walk : walks_) {
+    trace::Ray ray;
+    if (!reflect(walk, bounce, numbers, ray)) continue;
+    walk.direction = ray.direction;
+    if (const auto hit = work_.caster->closest_hit(ray)) {
+      walk.hit = *hit;
+      walks_[alive++] = walk;
+    } else {
+      keep_escaped(ray.direction, walk.throughput);
+    }
+  }
+  walks_.resize(alive);
+}
+
+bool PointBaker::reflect(Walk& walk, int bounce, RandomNumbers& numbers, trace::Ray& next) const {
+  const trace::SurfaceHit seen = work_.surfaces->hit(walk.hit, walk.direction);
+  if (!seen.is_front && !work_.surfaces->surface(walk.hit.triangle).is_double_sided) return false;
+  walk.throughput *= work_.surfaces->albedo(walk.hit);
+  if (is_black(walk.throughput) || !survives(walk.throughput, bounce, numbers)) return false;
+  const double x = numbers.next();
+  const Vec3 direction(cosine_direction(Vec3d(seen.point.shading_normal), {x, numbers.next()}));
+  if (!(glm::dot(direction, seen.point.geometric_normal) > 0.0F)) return false;  // the surface is in the way
+  next = {trace::ray_origin(seen.point, direction), direction};
+  return true;
+}
+
+void PointBaker::keep_escaped(const Vec3& direction, const Rgb& throughput) {
+  const std::size_t k = escaped_.count++;
+  escaped_.x[k] = direction.x;
+  escaped_.y[k] = direction.y;
+  escaped_.z[k] = direction.z;
+  for (int c = 0; c < work_.channels; ++c) escaped_.weight(c)[k] = throughput[c];
+}
+
+/// What escaped after a bounce goes to its term, where that is kept; else it waits: a direction drawn escapes once at most.
+void PointBaker::add_escaped(int bounce) {
+  if (bounce >= work_.kept_terms || escaped_.count == 0) return;
+  basis_sums_.add(escaped_, {sums_.data() + size_ * static_cast<std::size_t>(1 + bounce), size_});
+  escaped_.count = 0;
+}
+
+}  // namespace plumbline::transfer

@@ -1,0 +1,69 @@
+// prt/transfer/point_baker.hpp: transfer of one point after the other, by directions that escape.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "prt/sh/batch.hpp"
+#include "prt/transfer/basis_sums.hpp"
+#include "prt/transfer/bundle.hpp"
+#include "prt/transfer/direction_sampler.hpp"
+#include "prt/transfer/directions.hpp"
+#include "prt/transfer/set_statistics.hpp"
+#include "reference/trace/ray_caster.hpp"
+#include "reference/trace/surface_point.hpp"
+#include "reference/trace/surface_table.hpp"
+
+namespace plumbline::transfer {
+
+/// What all points of a bake share; outlives its bakers.
+struct PointWork {
+  const trace::RayCaster* caster = nullptr;
+  const trace::SurfaceTable* surfaces = nullptr;  // nullptr: nothing reflects, visibility is enough
+  const DirectionSampler* sampler = nullptr;
+  const sh::BatchBasis<float>* basis = nullptr;
+  std::uint64_t seed = 0;
+  DirectionSets directions = DirectionSets::per_vertex;
+  int channels = 1;
+  int max_bounces = 0;
+  int kept_terms = 0;
+};
+
+/// Scratch of one thread. A direction from the point escapes, and adds its basis functions to term 0; or it meets a surface that
+/// reflects, goes on from there in a cosine-distributed direction, and adds them, times the albedos passed, to the term of
+/// the bounce after which it escapes. That is an unbiased estimate of every term: a Lambertian surface reflects albedo/pi of
+/// its irradiance, and 1/pi times the cosine is the density of the directions drawn.
+class PointBaker {
+ public:
+  explicit PointBaker(const PointWork& work);
+
+  /// Statistics of [1 + kept terms][channel][bands^2]: the total, then the terms.
+  [[nodiscard]] SetStatistics run(const trace::SurfacePoint& point, std::uint64_t stream);
+
+ private:
+  struct Walk {
+    trace::Hit hit;
+    Vec3 direction{0.0F};  // that led to the hit
+    Rgb throughput{1.0F};
+  };
+
+  void add_visible(const trace::SurfacePoint& point);
+  void add_walks(const trace::SurfacePoint& point, RandomNumbers& numbers);
+  void walk_on(int bounce, RandomNumbers& numbers);
+  [[nodiscard]] bool reflect(Walk& walk, int bounce, RandomNumbers& numbers, trace::Ray& next) const;
+  void keep_escaped(const Vec3& direction, const Rgb& throughput);
+  void add_escaped(int bounce);
+
+  PointWork work_;
+  std::size_t size_;  // of a term: channels x bands^2
+  Bundle bundle_;
+  Bundle escaped_;
+  BasisSums basis_sums_;
+  std::vector<std::uint8_t> is_hit_;
+  std::vector<trace::Hit> hits_;
+  std::vector<Walk> walks_;
+  std::vector<double>
+      sums_;  // [1 + kept terms][channel][bands^2]; the first holds what no kept term does, then the total
+};
+
+}  // namespace plumbline::transfer
