@@ -27,7 +27,7 @@ Receiver receiver_at(const trace::SurfacePoint& point) {
 
 /// Samples of the lights and directions followed at the first vertex: its light is most of the noise of an image, and the
 /// camera ray is paid already. Powers of two.
-constexpr std::uint32_t kSkySplits = 4;
+constexpr std::uint32_t kSkySplits = 8;
 constexpr std::uint32_t kEmitterSplits = 2;
 constexpr std::uint32_t kDirectionSplits = 4;
 /// Vertices whose samples are points of one sequence over the whole pixel; deeper ones are so rarely alike from path to path
@@ -70,29 +70,31 @@ struct Draw {
 RgbD sky_by_light(const World& world, const trace::SurfacePoint& point, std::uint32_t count,
                   const Draw& first, Sampler& sampler) {
   std::array<Vec2, kSkySplits> points;
-  std::array<light::DirectionSample, kSkySplits> samples;
+  std::array<light::LobeSample, kSkySplits> samples;
   Draw draw = first;
   for (std::uint32_t s = 0; s < count; ++s, ++draw.split) points[s] = draw.light(sampler);
   world.environment_sampler.sample(world.environment_sampler.lobe(point.shading_normal),
                                    std::span(points).first(count), std::span(samples).first(count));
   // Light below the horizon needs no ray.
   std::array<trace::Ray, kSkySplits> rays;
-  std::array<RgbD, kSkySplits> light;
+  std::array<const light::LobeSample*, kSkySplits> senders;
+  std::array<double, kSkySplits> weights;
   std::size_t left = 0;
   for (std::uint32_t s = 0; s < count; ++s) {
-    const light::DirectionSample& sample = samples[s];
-    if (!(sample.pdf > 0.0) || is_black(sample.radiance)) continue;
+    const light::LobeSample& sample = samples[s];
+    if (!(sample.pdf > 0.0)) continue;
     const double cosine = received_cosine(point, sample.direction);
     if (!(cosine > 0.0)) continue;
     rays[left] = {trace::ray_origin(point, sample.direction), sample.direction};
-    light[left++] = RgbD(sample.radiance) * (cosine / sample.pdf);
+    senders[left] = &sample;
+    weights[left++] = cosine / sample.pdf;
   }
   RgbD sum(0.0);
   if (left == 0) return sum;
-  if (left == 1) return world.caster.is_occluded(rays[0]) ? sum : light[0];
-  const std::uint32_t occluded = world.caster.occluded(std::span(rays).first(left));
+  const std::uint32_t occluded = left == 1 ? static_cast<std::uint32_t>(world.caster.is_occluded(rays[0]))
+                                           : world.caster.occluded(std::span(rays).first(left));
   for (std::size_t i = 0; i < left; ++i) {
-    if ((occluded >> i & 1U) == 0U) sum += light[i];
+    if ((occluded >> i & 1U) == 0U) sum += RgbD(senders[i]->radiance()) * weights[i];
   }
   return sum;
 }

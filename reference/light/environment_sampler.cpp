@@ -92,24 +92,17 @@ double cell_radius(const CubeDensity& density) {
   return std::sqrt(2.0) / density.table().columns();
 }
 
-// Radiance of a cell that a direction was drawn in. Of images looked up by nearest texel the cell is the texel: its own
-// radiance, even where rounding has carried the direction over the border.
-Rgb cell_radiance(const Environment& environment, const TexelTable::Pick& cell, const Vec3& direction) {
-  if (environment.lookup == Lookup::nearest) {
-    if (const auto* sky = std::get_if<LatLongSky>(&environment.sky))
-      return sky->image.at(cell.column, cell.row);
-    if (const auto* sky = std::get_if<CubeMapSky>(&environment.sky)) {
-      const int side = sky->faces[0].width;
-      return sky->faces.at(static_cast<std::size_t>(cell.row / side)).at(cell.column, cell.row % side);
-    }
+// The texel of a cell that a direction was drawn in, of images looked up by nearest texel: its own radiance counts, even where
+// rounding has carried the direction over the border. None for others.
+const Rgb* texel_of(const Environment& environment, const TexelTable::Pick& cell) {
+  if (environment.lookup != Lookup::nearest) return nullptr;
+  if (const auto* sky = std::get_if<LatLongSky>(&environment.sky))
+    return &sky->image.at(cell.column, cell.row);
+  if (const auto* sky = std::get_if<CubeMapSky>(&environment.sky)) {
+    const int side = sky->faces[0].width;
+    return &sky->faces.at(static_cast<std::size_t>(cell.row / side)).at(cell.column, cell.row % side);
   }
-  return sky_radiance(environment, direction);
-}
-
-void prefetch_cell(const Environment& environment, const TexelTable::Pick& cell) {
-  const auto* sky = std::get_if<LatLongSky>(&environment.sky);
-  if (sky != nullptr && environment.lookup == Lookup::nearest)
-    __builtin_prefetch(&sky->image.at(cell.column, cell.row));
+  return nullptr;
 }
 
 }  // namespace
@@ -234,23 +227,22 @@ EnvironmentSampler::Lobe EnvironmentSampler::lobe(const Vec3& normal) const {
 template <class Density>
 void EnvironmentSampler::sample_sky(const Density& density, const Lobe& lobe,
                                     std::span<const glm::dvec2> numbers,
-                                    std::span<DirectionSample> samples) const {
+                                    std::span<LobeSample> samples) const {
   if constexpr (requires { density.table(); }) {
     std::array<SkyBlocks::Pick, kMostTogether> picks;
     for (std::size_t i = 0; i < numbers.size(); ++i)
       picks[i] =
           numbers[i].x < 0.0 ? SkyBlocks::Pick{} : blocks_.pick_block(lobe.sky, numbers[i].x, numbers[i].y);
     for (std::size_t i = 0; i < numbers.size(); ++i) blocks_.pick_row(density.table(), picks[i]);
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      blocks_.pick_column(density.table(), picks[i]);
-      prefetch_cell(*environment_, picks[i].cell);
-    }
+    for (std::size_t i = 0; i < numbers.size(); ++i) blocks_.pick_column(density.table(), picks[i]);
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       if (!(picks[i].probability > 0.0)) continue;
       const PlacedDirection placed = density.place(picks[i].cell);
       const Vec3 direction = to_world(placed.direction);
-      samples[i] = {direction, lobe.sky_probability * picks[i].probability * placed.density,
-                    cell_radiance(*environment_, picks[i].cell, direction)};
+      const Rgb* texel = texel_of(*environment_, picks[i].cell);
+      samples[i] = {direction, lobe.sky_probability * picks[i].probability * placed.density, texel,
+                    texel != nullptr ? Rgb(0.0F) : sky_radiance(*environment_, direction)};
+      if (texel != nullptr) __builtin_prefetch(texel);
     }
   } else {
     // The same from everywhere: by the cosine alone (cos^2 uniform).
@@ -259,12 +251,13 @@ void EnvironmentSampler::sample_sky(const Density& density, const Lobe& lobe,
       const double cosine = std::sqrt(1.0 - std::max(numbers[i].x, 0.0));
       if (numbers[i].x < 0.0 || !(cosine > 0.0)) continue;
       const Vec3 direction = to_world(around(local_normal, std::sqrt(2.0 - 2.0 * cosine), numbers[i].y));
-      samples[i] = {direction, lobe.sky_probability * cosine / kPi, sky_radiance(*environment_, direction)};
+      samples[i] = {direction, lobe.sky_probability * cosine / kPi, nullptr,
+                    sky_radiance(*environment_, direction)};
     }
   }
 }
 
-DirectionSample EnvironmentSampler::sample_cones(const Lobe& lobe, double x, double y) const {
+LobeSample EnvironmentSampler::sample_cones(const Lobe& lobe, double x, double y) const {
   const Vec3d local_normal(to_environment_frame(*environment_, lobe.normal));
   double target = x * lobe.cone_total;
   for (std::size_t k = 0; k < cones_.size(); ++k) {
@@ -276,13 +269,13 @@ DirectionSample EnvironmentSampler::sample_cones(const Lobe& lobe, double x, dou
     }
     const double probability = (1.0 - lobe.sky_probability) * weight / lobe.cone_total;
     return {inside_cone(cones_[k], std::min(target / weight, 1.0), y), probability * cones_[k].density,
-            cones_[k].sun->radiance};
+            &cones_[k].sun->radiance};
   }
   return {};
 }
 
 void EnvironmentSampler::sample(const Lobe& lobe, std::span<const Vec2> points,
-                                std::span<DirectionSample> samples) const {
+                                std::span<LobeSample> samples) const {
   std::array<glm::dvec2, kMostTogether> numbers;
   bool has_sky = false;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -305,9 +298,10 @@ void EnvironmentSampler::sample(const Lobe& lobe, std::span<const Vec2> points,
 }
 
 std::optional<DirectionSample> EnvironmentSampler::sample(const Lobe& lobe, Vec2 u) const {
-  DirectionSample result;
+  LobeSample result;
   sample(lobe, std::span(&u, 1), std::span(&result, 1));
-  return result.pdf > 0.0 ? std::optional(result) : std::nullopt;
+  if (!(result.pdf > 0.0)) return std::nullopt;
+  return DirectionSample{result.direction, result.pdf, result.radiance()};
 }
 
 std::optional<DirectionSample> EnvironmentSampler::sample(Vec2 u) const {

@@ -17,6 +17,16 @@ struct DirectionSample {
   Rgb radiance{0.0F};    // from that direction
 };
 
+/// The same, drawn about a normal. Reading the image costs a cache miss; what lies behind something is never asked for it.
+struct LobeSample {
+  Vec3 direction{0.0F};        // unit
+  double pdf = 0.0;            // per solid angle [sr^-1]; 0: nothing was drawn
+  const Rgb* texel = nullptr;  // of the environment, which holds the radiance; else `value` does
+  Rgb value{0.0F};
+
+  [[nodiscard]] Rgb radiance() const { return texel != nullptr ? *texel : value; }
+};
+
 /// Draws directions with a density that is positive wherever the radiance is not zero, and proportional to
 /// its magnitude (largest of |r|, |g|, |b|) up to the resolution of the tables:
 /// - constant sky: uniform over the sphere;
@@ -63,7 +73,7 @@ class EnvironmentSampler {
   /// One sample for each of up to kMostTogether points; pdf 0 stands for none. Faster than one by one: the samples' memory
   /// is fetched together.
   static constexpr std::size_t kMostTogether = 8;
-  void sample(const Lobe& lobe, std::span<const Vec2> points, std::span<DirectionSample> samples) const;
+  void sample(const Lobe& lobe, std::span<const Vec2> points, std::span<LobeSample> samples) const;
 
  private:
   struct Cone {
@@ -83,8 +93,8 @@ class EnvironmentSampler {
   [[nodiscard]] double cone_weight(const Cone& cone, const Vec3d& local_normal) const;
   template <class Density>
   void sample_sky(const Density& density, const Lobe& lobe, std::span<const glm::dvec2> numbers,
-                  std::span<DirectionSample> samples) const;
-  [[nodiscard]] DirectionSample sample_cones(const Lobe& lobe, double x, double y) const;
+                  std::span<LobeSample> samples) const;
+  [[nodiscard]] LobeSample sample_cones(const Lobe& lobe, double x, double y) const;
 
   const Environment* environment_;
   glm::dmat3 to_world_{1.0};

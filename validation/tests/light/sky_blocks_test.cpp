@@ -213,7 +213,7 @@ TEST(SkyLobe, GivesTheSameSamplesTogetherAsOneByOne) {
     const auto lobe = sampler.lobe(Vec3(0.0F, 0.6F, 0.8F));
     Numbers numbers;
     std::array<Vec2, EnvironmentSampler::kMostTogether> points;
-    std::array<DirectionSample, EnvironmentSampler::kMostTogether> together;
+    std::array<LobeSample, EnvironmentSampler::kMostTogether> together;
     for (Vec2& u : points) u = numbers.next_pair();
     sampler.sample(lobe, points, together);
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -222,7 +222,7 @@ TEST(SkyLobe, GivesTheSameSamplesTogetherAsOneByOne) {
       if (!alone) continue;
       EXPECT_EQ(alone->pdf, together[i].pdf);
       EXPECT_EQ(alone->direction, together[i].direction);
-      EXPECT_EQ(alone->radiance, together[i].radiance);
+      EXPECT_EQ(alone->radiance, together[i].radiance());
     }
   }
 }
