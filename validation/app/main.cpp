@@ -6,6 +6,7 @@
 #include <string>
 
 #include "reference/base/error.hpp"
+#include "validation/app/documents.hpp"
 #include "validation/app/verbs.hpp"
 
 namespace plumbline::app {
@@ -41,6 +42,13 @@ int run(int argc, const char* const* argv) {
   CLI::App app("Plumbline: ground truth for spherical-harmonic lighting and precomputed radiance transfer",
                "plumbline");
   app.set_version_flag("--version", "plumbline " PLUMBLINE_VERSION);
+  app.add_flag_callback(
+      "--man-page", [&app] { throw CLI::CallForVersion(man_page(app), CLI::ExitCodes::Success); },
+      "print the manual page");
+  app.add_flag_callback(
+      "--bash-completion",
+      [&app] { throw CLI::CallForVersion(bash_completion(app), CLI::ExitCodes::Success); },
+      "print a completion script for bash");
   app.require_subcommand(1);
   app.footer(
       "`plumbline VERB --help` describes a verb and shows an example.\n"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <optional>
 
 #include "reference/base/atomic_file.hpp"
 #include "reference/base/error.hpp"
@@ -11,6 +12,8 @@
 #include "validation/app/machine.hpp"
 #include "validation/app/verbs.hpp"
 #include "validation/checks/suite.hpp"
+#include "validation/regression/baseline.hpp"
+#include "validation/regression/quantities.hpp"
 #include "validation/report/report.hpp"
 
 namespace plumbline::app {
@@ -28,10 +31,15 @@ struct Options {
   std::string json;
   std::string size = "384x288";
   std::string tier = "quick";
+  std::string baseline;
+  bool is_update = false;
+  std::string reason;
+  bool is_timed = false;
   checks::Budget budget;
 };
 
-std::string reproducing_command(const Options& o) {
+// Without what may differ between two runs of the same: seed, threads, outputs.
+std::string command_of(const Options& o) {
   std::string command = "plumbline validate";
   for (const std::string& scene : o.scenes) command += " " + quoted(scene);
   if (o.scene.crease_deg > 0.0F) command += fmt::format(" --crease {}", o.scene.crease_deg);
@@ -42,10 +50,12 @@ std::string reproducing_command(const Options& o) {
   for (const int bands : o.bands) command += fmt::format(" {}", bands);
   if (!o.families.empty()) command += fmt::format(" --checks {}", fmt::join(o.families, ","));
   if (o.tier != "quick") command += " --tier " + o.tier;
-  command +=
-      fmt::format(" --size {} --spp {} --samples {} --gather-samples {} --seed {}", o.size,
-                  o.budget.image_samples, o.budget.bake_samples, o.budget.gather_samples, o.budget.seed);
-  return command + " -o " + quoted(o.output);
+  return command + fmt::format(" --size {} --spp {} --samples {} --gather-samples {}", o.size,
+                               o.budget.image_samples, o.budget.bake_samples, o.budget.gather_samples);
+}
+
+std::string reproducing_command(const Options& o) {
+  return fmt::format("{} --seed {} -o {}", command_of(o), o.budget.seed, quoted(o.output));
 }
 
 checks::Suite make_suite(const Options& options) {
@@ -122,7 +132,72 @@ void print_summary(const report::Report& report, const std::filesystem::path& pa
   fmt::print("report: {}\n", page.string());
 }
 
+// ---------------------------------------------------------------- baselines
+
+void require_consistent(const Options& options) {
+  if (options.baseline.empty() && (options.is_update || options.is_timed))
+    throw InputError(
+        fmt::format("{}: needs --baseline FILE", options.is_update ? "--update-baseline" : "--times"));
+  if (options.is_update && options.reason.find_first_not_of(' ') == std::string::npos)
+    throw InputError("--update-baseline: needs --reason TEXT: why the numbers may change");
+  if (!options.is_update && !options.reason.empty()) throw InputError("--reason: needs --update-baseline");
+}
+
+// The earlier run; none when the file is about to be made for the first time.
+std::optional<regression::Baseline> earlier(const Options& options) {
+  if (options.baseline.empty()) return std::nullopt;
+  if (options.is_update) require_writable(options.baseline);
+  if (options.is_update && !std::filesystem::exists(options.baseline)) return std::nullopt;
+  regression::Baseline baseline = regression::read_baseline(options.baseline);
+  if (!options.is_update && baseline.command != command_of(options)) {
+    throw InputError(fmt::format("{}: is the baseline of \"{}\", this is \"{}\"", options.baseline,
+                                 baseline.command, command_of(options)));
+  }
+  return baseline;
+}
+
+regression::Baseline measure(const Options& options, const checks::Suite& suite,
+                             const report::Report& report) {
+  suite.announce("numbers for the baseline");
+  regression::Baseline now;
+  now.command = command_of(options);
+  now.seed = options.budget.seed;
+  now.machine = report.machine;
+  now.findings = report.findings;
+  now.quantities = regression::measure_quantities(suite);
+  if (options.is_timed) now.times = regression::measure_kernels();
+  return now;
+}
+
+void update(const Options& options, const std::optional<regression::Baseline>& before,
+            regression::Baseline now, const report::Report& report) {
+  if (report::verdict(report) == checks::Verdict::fail) {
+    complain(fmt::format("{}: not updated, a check fails", options.baseline));
+    return;
+  }
+  if (before) now.history = before->history;
+  now.history.push_back({report.date, report.version, options.reason});
+  write_text_atomically(options.baseline, regression::to_json(now));
+}
+
+// Adds to the report what has changed; with --update-baseline, makes the file anew instead.
+void hold_against_baseline(const Options& options, const std::optional<regression::Baseline>& before,
+                           const checks::Suite& suite, report::Report& report) {
+  const regression::Baseline now = measure(options, suite, report);
+  if (options.is_update) {
+    update(options, before, now, report);
+    return;
+  }
+  regression::CompareSettings settings;
+  settings.significance = options.budget.significance;
+  report.settings.emplace_back("baseline", options.baseline);
+  for (checks::Finding& finding : regression::compare(*before, now, settings))
+    report.findings.push_back(finding);
+}
+
 int run(const Options& options) {
+  require_consistent(options);
+  const std::optional<regression::Baseline> before = earlier(options);
   const checks::Suite suite = make_suite(options);
   const std::filesystem::path folder(options.output);
   make_folder(folder, "report.html");
@@ -130,14 +205,16 @@ int run(const Options& options) {
   for (const checks::Family& family : checks::families()) {
     if (!is_chosen(options, family)) continue;
     const auto start = std::chrono::steady_clock::now();
-    const std::size_t before = report.findings.size();
+    const std::size_t earlier_findings = report.findings.size();
     family.run(suite, report);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    const auto added = static_cast<double>(std::max<std::size_t>(1, report.findings.size() - before));
-    for (std::size_t i = before; i < report.findings.size(); ++i) {
+    const auto added =
+        static_cast<double>(std::max<std::size_t>(1, report.findings.size() - earlier_findings));
+    for (std::size_t i = earlier_findings; i < report.findings.size(); ++i) {
       if (report.findings[i].seconds == 0.0) report.findings[i].seconds = seconds / added;  // not timed alone
     }
   }
+  if (!options.baseline.empty()) hold_against_baseline(options, before, suite, report);
   const std::string json = report::to_json(report).dump(2) + "\n";
   write_text_atomically(folder / "report.json", json);
   write_text_atomically(folder / "junit.xml", report::to_junit(report));
@@ -188,6 +265,12 @@ void register_validate(CLI::App& app, Action& chosen) {
   verb->add_option("--seed", options->budget.seed, "same seed, same numbers");
   verb->add_option("--threads", options->budget.threads, "0 = all; never changes the numbers")
       ->check(CLI::Range(0, 4096));
+  verb->add_option("--baseline", options->baseline,
+                   "hold this run against that of an earlier one: numbers by their standard errors");
+  verb->add_flag("--update-baseline", options->is_update, "make the file of --baseline anew; needs --reason");
+  verb->add_option("--reason", options->reason, "why the numbers may change; kept in the file");
+  verb->add_flag("--times", options->is_timed,
+                 "with --baseline: also times of inner loops (2 s); compared on the same machine only");
   verb->footer("Example: plumbline validate builtin:plaza --env builtin:sun-sky --bands 3 5 -o report");
   verb->callback([options, &chosen] {
     chosen = [options] {

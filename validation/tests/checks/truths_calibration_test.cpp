@@ -111,7 +111,7 @@ TEST(TruthsImages, ScaledCopiesGiveTheSameImage) {
 }
 
 TEST(TruthsImages, ATinySunLeavesNoFireflies) {
-  const SunImages sun = sun_images(Budget{}, 1024);
+  const SunImages sun = sun_images(Budget{}, 512);
   EXPECT_LE(sun.relative_error, 0.01);
   const Finding pixels = judge_values("pixels", sun.quick, sun.reference, kSignificance);
   EXPECT_EQ(pixels.verdict, Verdict::pass) << pixels.measured << " against " << pixels.bound;

@@ -1,0 +1,23 @@
+# Installs BUILD into a folder of its own under FOLDER, builds the consumer against that alone, and runs it.
+function(step)
+  execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+set(prefix "${FOLDER}/prefix")
+file(REMOVE_RECURSE "${FOLDER}")
+step(${CMAKE_COMMAND} --install "${BUILD}" --prefix "${prefix}" COMMAND_ECHO NONE OUTPUT_QUIET)
+step(${CMAKE_COMMAND} -S "${CMAKE_CURRENT_LIST_DIR}" -B "${FOLDER}/build" -G Ninja -DCMAKE_BUILD_TYPE=Release
+     "-DCMAKE_PREFIX_PATH=${prefix}" "-DCMAKE_CXX_COMPILER=${CXX}" OUTPUT_QUIET)
+step(${CMAKE_COMMAND} --build "${FOLDER}/build" OUTPUT_QUIET)
+step("${FOLDER}/build/consumer")
+# The installed command finds its module, and its documents are there.
+file(WRITE "${FOLDER}/no.png" "no picture")
+execute_process(COMMAND "${prefix}/bin/plumbline" project "${FOLDER}/no.png" --bands 1 ERROR_VARIABLE reason RESULT_VARIABLE code)
+if(NOT code EQUAL 2 OR reason MATCHES "cannot be loaded" OR NOT reason MATCHES "cannot read as an image")
+  message(FATAL_ERROR "the installed command says of a damaged picture: ${reason}")
+endif()
+foreach(document share/man/man1/plumbline.1 share/bash-completion/completions/plumbline)
+  file(READ "${prefix}/${document}" text)
+  if(NOT text MATCHES "validate")
+    message(FATAL_ERROR "${document} knows no verb validate")
+  endif()
+endforeach()
