@@ -55,6 +55,11 @@ DirectionSampler::DirectionSampler(Sampling sampling, DirectionSets sets, std::u
 void DirectionSampler::draw(const trace::SurfacePoint& point, const Place& place, Bundle& bundle) const {
   Place mine = place;
   if (sets_ == DirectionSets::shared) mine.stream = 0;
+  if (sampling_ == Sampling::qmc) {
+    mine.first += mine.repeat * set_size_;
+  } else {
+    mine.randomisation += mine.repeat * kRepeatedSets;
+  }
   switch (sampling_) {
     case Sampling::qmc:
       return draw_lattice(point, mine, bundle);

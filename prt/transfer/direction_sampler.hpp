@@ -24,10 +24,12 @@ class DirectionSampler {
 
   struct Place {
     std::uint64_t stream = 0;
-    std::uint32_t randomisation = 0;
-    std::size_t first = 0;  // of the set
-    std::size_t count = 0;  // <= kMostTogether
+    std::uint32_t randomisation = 0;  // below kRepeatedSets where there are repeats
+    std::size_t first = 0;            // of the set
+    std::size_t count = 0;            // <= kMostTogether
+    std::uint32_t repeat = 0;         // as many directions again: the lattice goes on, grids are drawn anew
   };
+  static constexpr std::uint32_t kRepeatedSets = 64;
   /// Fills the bundle (all channels alike) with those of the directions that leave the point's surface, above its geometric
   /// and its shading plane. The sum of weight y over a set, over set_size(), estimates (1/pi) integral y max(0, n.w) dw.
   void draw(const trace::SurfacePoint& point, const Place& place, Bundle& bundle) const;

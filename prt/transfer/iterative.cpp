@@ -115,6 +115,8 @@ class SetSolution {
  private:
   template <class Body>
   void for_points(const Body& body) const;
+  [[nodiscard]] Above above(std::size_t point) const;
+  void set_first_term(std::size_t point, const std::vector<double>& values, double scale);
   void trace_point(std::size_t point, std::uint32_t set, Tracing& tracing);
   void gather_point(std::size_t point, Gathering& gathering);
   [[nodiscard]] double add_hit(const StoredHit& hit, Gathering& gathering) const;
@@ -175,27 +177,40 @@ void sort_bundle(const trace::SurfaceTable& surfaces, Tracing& tracing) {
   }
 }
 
+Above SetSolution::above(std::size_t point) const {
+  return point < work_.above->size() ? (*work_.above)[point] : Above::something;
+}
+
+void SetSolution::set_first_term(std::size_t point, const std::vector<double>& values, double scale) {
+  for (int c = 0; c < channels_; ++c) {
+    float* out = last_.data() + point * width_ + static_cast<std::size_t>(c) * row_;
+    for (std::size_t i = 0; i < count_; ++i) out[i] = static_cast<float>(values[i] * scale);
+  }
+}
+
 void SetSolution::trace_point(std::size_t p, std::uint32_t set, Tracing& tracing) {
   const trace::SurfacePoint& point = sides_.points[p];
+  if (above(p) == Above::nothing_flat)
+    return set_first_term(p, unshadowed_transfer(work_.basis->bands(), point.shading_normal), 1.0);
   const Vec3 origin = point.position + point.clearance * point.geometric_normal;
   const std::size_t size = work_.sampler->set_size();
   tracing.stored.clear();
   std::fill(tracing.sums.begin(), tracing.sums.end(), 0.0);
   for (std::size_t first = 0; first < size; first += DirectionSampler::kMostTogether) {
-    work_.sampler->draw(point, {p, set, first, std::min(DirectionSampler::kMostTogether, size - first)},
+    work_.sampler->draw(point, {p, set, first, std::min(DirectionSampler::kMostTogether, size - first), 0},
                         tracing.bundle);
-    const Bundle& bundle = tracing.bundle;
+    Bundle& bundle = tracing.bundle;
+    if (above(p) == Above::nothing) {
+      tracing.basis_sums.add(bundle, tracing.sums);
+      continue;
+    }
     work_.caster->closest_from(origin, {bundle.x.data(), bundle.y.data(), bundle.z.data(), bundle.count},
                                tracing.hits.data());
     sort_bundle(*work_.surfaces, tracing);
     tracing.basis_sums.add(tracing.escaped, tracing.sums);
   }
   hits_[p].assign(tracing.stored.begin(), tracing.stored.end());
-  for (int c = 0; c < channels_; ++c) {
-    float* out = last_.data() + p * width_ + static_cast<std::size_t>(c) * row_;
-    for (std::size_t i = 0; i < count_; ++i)
-      out[i] = static_cast<float>(tracing.sums[i] / static_cast<double>(size));
-  }
+  set_first_term(p, tracing.sums, 1.0 / static_cast<double>(size));
 }
 
 /// Points that were met and are not traced.
@@ -308,9 +323,19 @@ void add_set(const Rows& values, std::size_t row, std::size_t count, int set, Te
   }
 }
 
-void finish(Term& term) {
+void finish(Term& term, int sets) {
   for (float& value : term.standard_errors)
-    value = static_cast<float>(std::sqrt(static_cast<double>(value) / (kSets * (kSets - 1.0))));
+    value =
+        sets == 1 ? 0.0F : static_cast<float>(std::sqrt(static_cast<double>(value) / (sets * (sets - 1.0))));
+}
+
+/// Root mean square over all vectors, of which each has `count` coefficients, of their errors after `sets` sets.
+double vector_error(const Term& term, std::size_t count, int sets) {
+  double squares = 0.0;
+  for (const float value : term.standard_errors) squares += static_cast<double>(value);
+  const double vectors =
+      static_cast<double>(std::max<std::size_t>(1, term.coefficients.size())) / static_cast<double>(count);
+  return std::sqrt(squares / (vectors * sets * (sets - 1.0)));
 }
 
 /// 1e-4 of T_00 in a white furnace, 1/sqrt(4 pi): the largest there can be.
@@ -363,14 +388,24 @@ void solve_iteratively(const IterativeWork& work, Transfer& transfer) {
   solved.terms.assign(static_cast<std::size_t>(work.kept_terms), solved.total);
   const Sides sides = make_sides(*work.scene, *work.vertices);
   SetSolution solution(work, sides, transfer);
+  const auto set_size = static_cast<std::int64_t>(work.sampler->set_size());
+  const std::int64_t most = work.allowed_error > 0.0 ? kMostSamples / set_size : 0;
   transfer.remainder = 0.0;
-  for (int set = 0; set < kSets; ++set) {
-    solution.trace_set(static_cast<std::uint32_t>(set));
-    transfer.remainder = std::max(transfer.remainder, add_solution(work, set, count, solution, solved));
-    if (work.progress) work.progress(static_cast<double>(set + 1) / kSets);
-  }
-  finish(solved.total);
-  for (Term& term : solved.terms) finish(term);
+  int sets = 0;
+  bool is_on_target = true;
+  do {
+    solution.trace_set(static_cast<std::uint32_t>(sets));
+    transfer.remainder = std::max(transfer.remainder, add_solution(work, sets, count, solution, solved));
+    ++sets;
+    is_on_target = work.allowed_error == 0.0 ||
+                   vector_error(solved.total, count, std::max(2, sets)) <= work.allowed_error;
+    if (work.progress) work.progress(std::min(1.0, static_cast<double>(sets) / work.sets));
+  } while (sets < work.sets || (!is_on_target && sets < most));
+  finish(solved.total, sets);
+  for (Term& term : solved.terms) finish(term, sets);
+  transfer.samples = set_size * sets;
+  transfer.mean_samples = static_cast<double>(transfer.samples);
+  transfer.above_target = is_on_target ? 0 : transfer.vertices;
   transfer.coefficients = std::move(solved.total.coefficients);
   transfer.standard_errors = std::move(solved.total.standard_errors);
   transfer.terms = std::move(solved.terms);

@@ -1,8 +1,11 @@
 #include "prt/transfer/point_baker.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <span>
 
 #include "prt/sh/basis.hpp"
+#include "prt/transfer/bake.hpp"
 
 namespace plumbline::transfer {
 namespace {
@@ -37,39 +40,86 @@ bool survives(Rgb& throughput, int bounce, RandomNumbers& numbers) {
 PointBaker::PointBaker(const PointWork& work)
     : work_(work),
       size_(static_cast<std::size_t>(work.channels * sh::coefficient_count(work.basis->bands()))),
+      width_(size_ * static_cast<std::size_t>(1 + work.kept_terms)),
       bundle_(DirectionSampler::kMostTogether, work.channels),
       escaped_(DirectionSampler::kMostTogether, work.channels),
       basis_sums_(*work.basis, work.channels),
       is_hit_(bundle_.capacity),
       hits_(work.surfaces != nullptr ? bundle_.capacity : 0),
-      sums_(size_ * static_cast<std::size_t>(1 + work.kept_terms)) {
+      totals_(static_cast<std::size_t>(work.sets) * width_),
+      sums_(width_) {
   walks_.reserve(hits_.size());
 }
 
-SetStatistics PointBaker::run(const trace::SurfacePoint& point, std::uint64_t stream) {
-  const std::size_t count = work_.sampler->set_size();
-  const std::uint64_t walk_stream = work_.directions == DirectionSets::shared ? 0 : stream;
-  SetStatistics statistics(sums_.size());
-  for (std::uint32_t set = 0; set < kSets; ++set) {
-    std::fill(sums_.begin(), sums_.end(), 0.0);
-    RandomNumbers numbers(work_.seed ^ kWalkSeed, walk_stream, set);
-    for (std::size_t first = 0; first < count; first += DirectionSampler::kMostTogether) {
-      work_.sampler->draw(
-          point, {stream, set, first, std::min(DirectionSampler::kMostTogether, count - first)}, bundle_);
-      if (work_.surfaces == nullptr) {
-        add_visible(point);
-      } else {
-        add_walks(point, numbers);
-      }
+PointResult PointBaker::run(const trace::SurfacePoint& point, std::uint64_t stream, Above above) {
+  if (above == Above::nothing_flat) return closed_form(point);
+  std::fill(totals_.begin(), totals_.end(), 0.0);
+  const std::size_t set_size = work_.sampler->set_size();
+  PointResult result;
+  std::uint32_t repeats = 0;
+  for (std::uint32_t wanted = 1;; wanted *= 2) {
+    for (; repeats < wanted; ++repeats) {
+      for (std::uint32_t set = 0; set < static_cast<std::uint32_t>(work_.sets); ++set)
+        add_set(point, stream, set, repeats, above);
     }
-    for (std::size_t i = size_; i < sums_.size(); ++i) sums_[i % size_] += sums_[i];
-    statistics.add(sums_, 1.0 / static_cast<double>(count));
+    result.samples = static_cast<std::int64_t>(repeats * set_size) * work_.sets;
+    if (work_.allowed_error == 0.0) break;
+    result.is_on_target = is_on_target(static_cast<double>(repeats * set_size));
+    if (result.is_on_target || 2 * result.samples > kMostSamples) break;
   }
-  return statistics;
+  result.statistics = statistics_of(totals_, width_, static_cast<double>(repeats * set_size),
+                                    work_.allowed_error == 0.0 ? Half::all : Half::odd);
+  return result;
 }
 
-void PointBaker::add_visible(const trace::SurfacePoint& point) {
+/// Nothing is above the plane, and the cosine is about its normal. Nothing bounces.
+PointResult PointBaker::closed_form(const trace::SurfacePoint& point) const {
+  const std::vector<double> exact = unshadowed_transfer(work_.basis->bands(), point.shading_normal);
+  PointResult result{{std::vector<double>(width_, 0.0), std::vector<double>(width_, 0.0)}, 0, true};
+  const std::size_t filled = work_.kept_terms > 0 ? 2 * size_ : size_;  // the total and term 0
+  for (std::size_t i = 0; i < filled; ++i) result.statistics.mean[i] = exact[i % exact.size()];
+  return result;
+}
+
+void PointBaker::add_set(const trace::SurfacePoint& point, std::uint64_t stream, std::uint32_t set,
+                         std::uint32_t repeat, Above above) {
+  const std::size_t count = work_.sampler->set_size();
+  std::fill(sums_.begin(), sums_.end(), 0.0);
+  RandomNumbers numbers(work_.seed ^ kWalkSeed, work_.directions == DirectionSets::shared ? 0 : stream,
+                        set + repeat * DirectionSampler::kRepeatedSets);
+  for (std::size_t first = 0; first < count; first += DirectionSampler::kMostTogether) {
+    work_.sampler->draw(
+        point, {stream, set, first, std::min(DirectionSampler::kMostTogether, count - first), repeat},
+        bundle_);
+    if (work_.surfaces == nullptr || above == Above::nothing) {
+      add_visible(point, above);
+    } else {
+      add_walks(point, numbers);
+    }
+  }
+  for (std::size_t i = size_; i < width_; ++i) sums_[i % size_] += sums_[i];
+  double* const total = totals_.data() + set * width_;
+  for (std::size_t i = 0; i < width_; ++i) total[i] += sums_[i];
+}
+
+/// By the even sets alone: the odd ones state the error (BakeSettings::target_error).
+bool PointBaker::is_on_target(double count) const {
+  const std::size_t vector = size_ / static_cast<std::size_t>(work_.channels);
+  for (std::size_t channel = 0; channel < size_; channel += vector) {
+    double squares = 0.0;
+    for (std::size_t i = channel; i < channel + vector; ++i) {
+      const double error = standard_error(totals_, width_, i, Half::even) / count;
+      squares += error * error;
+    }
+    if (!(std::sqrt(squares) <= work_.allowed_error)) return false;
+  }
+  return true;
+}
+
+void PointBaker::add_visible(const trace::SurfacePoint& point, Above above) {
   if (bundle_.count == 0) return;
+  const std::span<double> sums(sums_.data() + (work_.kept_terms > 0 ? size_ : 0), size_);
+  if (above == Above::nothing) return basis_sums_.add(bundle_, sums);
   const Vec3 origin = point.position + point.clearance * point.geometric_normal;
   work_.caster->occluded_from(origin, arrays(bundle_), is_hit_.data());
   // What escapes moves to the front, in its order; no branch depends on a ray.
@@ -82,7 +132,7 @@ void PointBaker::add_visible(const trace::SurfacePoint& point) {
     kept += is_hit_[k] == 0 ? 1 : 0;
   }
   bundle_.count = kept;
-  basis_sums_.add(bundle_, {sums_.data() + (work_.kept_terms > 0 ? size_ : 0), size_});
+  basis_sums_.add(bundle_, sums);
 }
 
 void PointBaker::add_walks(const trace::SurfacePoint& point, RandomNumbers& numbers) {

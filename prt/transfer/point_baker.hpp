@@ -9,6 +9,7 @@
 #include "prt/transfer/bundle.hpp"
 #include "prt/transfer/direction_sampler.hpp"
 #include "prt/transfer/directions.hpp"
+#include "prt/transfer/plan.hpp"
 #include "prt/transfer/set_statistics.hpp"
 #include "reference/trace/ray_caster.hpp"
 #include "reference/trace/surface_point.hpp"
@@ -27,6 +28,15 @@ struct PointWork {
   int channels = 1;
   int max_bounces = 0;
   int kept_terms = 0;
+  int sets = kSets;
+  double allowed_error = 0.0;  // of a vector, absolute; 0: none asked for
+};
+
+/// Statistics of [1 + kept terms][channel][bands^2]: the total, then the terms.
+struct PointResult {
+  SetStatistics statistics;
+  std::int64_t samples = 0;  // directions drawn
+  bool is_on_target = true;
 };
 
 /// Scratch of one thread. A direction from the point escapes, and adds its basis functions to term 0; or it meets a surface that
@@ -37,8 +47,7 @@ class PointBaker {
  public:
   explicit PointBaker(const PointWork& work);
 
-  /// Statistics of [1 + kept terms][channel][bands^2]: the total, then the terms.
-  [[nodiscard]] SetStatistics run(const trace::SurfacePoint& point, std::uint64_t stream);
+  [[nodiscard]] PointResult run(const trace::SurfacePoint& point, std::uint64_t stream, Above above);
 
  private:
   struct Walk {
@@ -47,7 +56,11 @@ class PointBaker {
     Rgb throughput{1.0F};
   };
 
-  void add_visible(const trace::SurfacePoint& point);
+  [[nodiscard]] PointResult closed_form(const trace::SurfacePoint& point) const;
+  void add_set(const trace::SurfacePoint& point, std::uint64_t stream, std::uint32_t set,
+               std::uint32_t repeat, Above above);
+  [[nodiscard]] bool is_on_target(double count) const;
+  void add_visible(const trace::SurfacePoint& point, Above above);
   void add_walks(const trace::SurfacePoint& point, RandomNumbers& numbers);
   void walk_on(int bounce, RandomNumbers& numbers);
   [[nodiscard]] bool reflect(Walk& walk, int bounce, RandomNumbers& numbers, trace::Ray& next) const;
@@ -55,15 +68,16 @@ class PointBaker {
   void add_escaped(int bounce);
 
   PointWork work_;
-  std::size_t size_;  // of a term: channels x bands^2
+  std::size_t size_;   // of a term: channels x bands^2
+  std::size_t width_;  // of a set: [1 + kept terms][channel][bands^2]
   Bundle bundle_;
   Bundle escaped_;
   BasisSums basis_sums_;
   std::vector<std::uint8_t> is_hit_;
   std::vector<trace::Hit> hits_;
   std::vector<Walk> walks_;
-  std::vector<double>
-      sums_;  // [1 + kept terms][channel][bands^2]; the first holds what no kept term does, then the total
+  std::vector<double> totals_;  // [set][width]
+  std::vector<double> sums_;    // [width] of one draw; first what no kept term holds, in the end the total
 };
 
 }  // namespace plumbline::transfer
