@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 
 #include "prt/sh/basis.hpp"
 #include "prt/sh/zonal.hpp"
@@ -49,7 +50,8 @@ std::size_t coefficients(int bands) {
 
 DirectionSampler make_sampler(const BakeSettings& settings) {
   return {settings.method.sampling, settings.method.directions, settings.seed,
-          static_cast<std::size_t>(settings.samples / settings.sets)};
+          static_cast<std::size_t>(settings.samples / settings.sets),
+          static_cast<std::uint32_t>(settings.sets)};
 }
 
 /// One of the parts that PointBaker gives.
@@ -117,6 +119,7 @@ void bake_points(const PointWork& work, const std::vector<trace::SurfacePoint>& 
     }
   });
   result.above_target = above_target;
+  result.samples = static_cast<std::int64_t>(work.sampler->set_size()) * work.sets;
   double sum = 0.0;
   for (const std::int64_t count : samples) {
     result.samples = std::max(result.samples, count);
@@ -259,7 +262,8 @@ Transfer bake(const scene::Scene& scene, const BakeSettings& settings, const Pla
   const DirectionSampler sampler = make_sampler(settings);
   const sh::BatchBasis<float> basis(settings.bands);
   const trace::RayCaster caster(scene);
-  const trace::SurfaceTable surfaces(scene);
+  std::optional<trace::SurfaceTable> surfaces;
+  if (plan.is_reflecting) surfaces.emplace(scene);
   result.target_error = settings.target_error;
   result.bounces = is_interreflected ? settings.max_bounces : 0;
   result.channels = plan.channels;
@@ -267,11 +271,11 @@ Transfer bake(const scene::Scene& scene, const BakeSettings& settings, const Pla
   const double allowed_error = settings.target_error * unshadowed_norm(settings.bands);
   if (plan.is_reflecting && settings.method.solver == Solver::iterative) {
     solve_iteratively(
-        {&scene, &caster, &surfaces, &sampler, &basis, &points, &plan.above, settings.max_bounces, kept,
+        {&scene, &caster, &*surfaces, &sampler, &basis, &points, &plan.above, settings.max_bounces, kept,
          settings.sets, allowed_error, settings.threads, settings.progress},
         result);
   } else {
-    bake_points({&caster, plan.is_reflecting ? &surfaces : nullptr, &sampler, &basis, settings.seed,
+    bake_points({&caster, surfaces ? &*surfaces : nullptr, &sampler, &basis, settings.seed,
                  settings.method.directions, result.channels, plan.is_reflecting ? result.bounces : 0, kept,
                  settings.sets, allowed_error},
                 points, plan, settings, result);

@@ -308,19 +308,34 @@ double SetSolution::remainder() const {
   return static_cast<double>(largest) * sum / (1.0 - norms_.back());
 }
 
-/// Mean and squared deviations over sets, in the arrays of the result; finished() turns the latter into standard errors. The
+/// Mean and squared deviations over sets, in the arrays of the result; finish() turns the latter into standard errors. The
 /// arithmetic is double, what is kept between sets float: an error of 6e-8 a set.
-void add_set(const Rows& values, std::size_t row, std::size_t count, int set, Term& term) {
+void add_set(const Rows& values, std::size_t row, std::size_t count, int set, int threads, Term& term) {
   const double sets = set + 1;
-  for (std::size_t i = 0; i < term.coefficients.size(); ++i) {
-    const auto value = static_cast<double>(values[i / count * row + i % count]);
-    const auto mean = static_cast<double>(term.coefficients[i]);
-    const double difference = value - mean;
-    const double new_mean = mean + difference / sets;
-    term.coefficients[i] = static_cast<float>(new_mean);
-    term.standard_errors[i] =
-        static_cast<float>(static_cast<double>(term.standard_errors[i]) + difference * (value - new_mean));
-  }
+  const std::size_t vectors = term.coefficients.size() / count;
+  parallel_for((vectors + kBlock - 1) / kBlock, threads, [&](std::size_t block) {
+    for (std::size_t v = block * kBlock; v < std::min(vectors, (block + 1) * kBlock); ++v) {
+      const float* from = values.data() + v * row;
+      float* means = term.coefficients.data() + v * count;
+      float* squares = term.standard_errors.data() + v * count;
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto value = static_cast<double>(from[i]);
+        const double difference = value - static_cast<double>(means[i]);
+        const double mean = static_cast<double>(means[i]) + difference / sets;
+        means[i] = static_cast<float>(mean);
+        squares[i] = static_cast<float>(static_cast<double>(squares[i]) + difference * (value - mean));
+      }
+    }
+  });
+}
+
+/// sum += term, as far as there are vertices: backs are not kept.
+void accumulate(const Rows& term, int threads, Rows& sum) {
+  constexpr std::size_t kTogether = std::size_t{1} << 14U;
+  parallel_for((sum.size() + kTogether - 1) / kTogether, threads, [&](std::size_t block) {
+    for (std::size_t i = block * kTogether; i < std::min(sum.size(), (block + 1) * kTogether); ++i)
+      sum[i] += term[i];
+  });
 }
 
 void finish(Term& term, int sets) {
@@ -356,14 +371,15 @@ struct Solved {
 /// Bounces one set's light until it is used up. @return the bound on what is left out
 double add_solution(const IterativeWork& work, int set, std::size_t count, SetSolution& solution,
                     Solved& solved) {
-  const std::size_t row = solution.row();
-  Rows sum(solution.term().size());
+  const auto add = [&](const Rows& values, Term& term) {
+    add_set(values, solution.row(), count, set, work.threads, term);
+  };
+  Rows sum(work.vertices->size() * solution.width());
   double remainder = 0.0;
   int k = 0;
   for (;; ++k) {
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += solution.term()[i];
-    if (k < work.kept_terms)
-      add_set(solution.term(), row, count, set, solved.terms[static_cast<std::size_t>(k)]);
+    accumulate(solution.term(), work.threads, sum);
+    if (k < work.kept_terms) add(solution.term(), solved.terms[static_cast<std::size_t>(k)]);
     if (k == work.max_bounces) break;
     if (work.max_bounces == kAllBounces) {
       remainder = solution.remainder();
@@ -372,10 +388,9 @@ double add_solution(const IterativeWork& work, int set, std::size_t count, SetSo
     }
     solution.bounce();
   }
-  add_set(sum, row, count, set, solved.total);
+  add(sum, solved.total);
   std::fill(sum.begin(), sum.end(), 0.0F);
-  for (++k; k < work.kept_terms; ++k)
-    add_set(sum, row, count, set, solved.terms[static_cast<std::size_t>(k)]);
+  for (++k; k < work.kept_terms; ++k) add(sum, solved.terms[static_cast<std::size_t>(k)]);
   return remainder;
 }
 

@@ -19,6 +19,10 @@ constexpr int kWhiteBounces = 16;  // before that, nothing but its albedos ends 
 // Choices of walks are other numbers than the shifts of sets.
 constexpr std::uint64_t kWalkSeed = 0xA0761D6478BD642FULL;
 
+std::ptrdiff_t as_offset(std::size_t count) {
+  return static_cast<std::ptrdiff_t>(count);
+}
+
 trace::DirectionArrays arrays(const Bundle& bundle) {
   return {bundle.x.data(), bundle.y.data(), bundle.z.data(), bundle.count};
 }
@@ -43,6 +47,7 @@ PointBaker::PointBaker(const PointWork& work)
       width_(size_ * static_cast<std::size_t>(1 + work.kept_terms)),
       bundle_(DirectionSampler::kMostTogether, work.channels),
       escaped_(DirectionSampler::kMostTogether, work.channels),
+      joint_(DirectionSampler::kMostTogether, work.channels),
       basis_sums_(*work.basis, work.channels),
       is_hit_(bundle_.capacity),
       hits_(work.surfaces != nullptr ? bundle_.capacity : 0),
@@ -59,8 +64,12 @@ PointResult PointBaker::run(const trace::SurfacePoint& point, std::uint64_t stre
   std::uint32_t repeats = 0;
   for (std::uint32_t wanted = 1;; wanted *= 2) {
     for (; repeats < wanted; ++repeats) {
+      if (work_.surfaces == nullptr || above == Above::nothing) {
+        add_visible_sets(point, stream, repeats, above);
+        continue;
+      }
       for (std::uint32_t set = 0; set < static_cast<std::uint32_t>(work_.sets); ++set)
-        add_set(point, stream, set, repeats, above);
+        add_walk_set(point, stream, set, repeats);
     }
     result.samples = static_cast<std::int64_t>(repeats * set_size) * work_.sets;
     if (work_.allowed_error == 0.0) break;
@@ -81,8 +90,8 @@ PointResult PointBaker::closed_form(const trace::SurfacePoint& point) const {
   return result;
 }
 
-void PointBaker::add_set(const trace::SurfacePoint& point, std::uint64_t stream, std::uint32_t set,
-                         std::uint32_t repeat, Above above) {
+void PointBaker::add_walk_set(const trace::SurfacePoint& point, std::uint64_t stream, std::uint32_t set,
+                              std::uint32_t repeat) {
   const std::size_t count = work_.sampler->set_size();
   std::fill(sums_.begin(), sums_.end(), 0.0);
   RandomNumbers numbers(work_.seed ^ kWalkSeed, work_.directions == DirectionSets::shared ? 0 : stream,
@@ -91,11 +100,7 @@ void PointBaker::add_set(const trace::SurfacePoint& point, std::uint64_t stream,
     work_.sampler->draw(
         point, {stream, set, first, std::min(DirectionSampler::kMostTogether, count - first), repeat},
         bundle_);
-    if (work_.surfaces == nullptr || above == Above::nothing) {
-      add_visible(point, above);
-    } else {
-      add_walks(point, numbers);
-    }
+    add_walks(point, numbers);
   }
   for (std::size_t i = size_; i < width_; ++i) sums_[i % size_] += sums_[i];
   double* const total = totals_.data() + set * width_;
@@ -116,23 +121,63 @@ bool PointBaker::is_on_target(double count) const {
   return true;
 }
 
-void PointBaker::add_visible(const trace::SurfacePoint& point, Above above) {
-  if (bundle_.count == 0) return;
-  const std::span<double> sums(sums_.data() + (work_.kept_terms > 0 ? size_ : 0), size_);
-  if (above == Above::nothing) return basis_sums_.add(bundle_, sums);
-  const Vec3 origin = point.position + point.clearance * point.geometric_normal;
-  work_.caster->occluded_from(origin, arrays(bundle_), is_hit_.data());
-  // What escapes moves to the front, in its order; no branch depends on a ray.
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < bundle_.count; ++k) {
-    bundle_.x[kept] = bundle_.x[k];
-    bundle_.y[kept] = bundle_.y[k];
-    bundle_.z[kept] = bundle_.z[k];
-    for (int c = 0; c < work_.channels; ++c) bundle_.weight(c)[kept] = bundle_.weight(c)[k];
-    kept += is_hit_[k] == 0 ? 1 : 0;
+void PointBaker::add_visible_sets(const trace::SurfacePoint& point, std::uint64_t stream,
+                                  std::uint32_t repeat, Above above) {
+  const std::size_t count = work_.sampler->set_size();
+  joint_.count = 0;
+  pieces_.clear();
+  for (std::uint32_t set = 0; set < static_cast<std::uint32_t>(work_.sets); ++set) {
+    for (std::size_t first = 0; first < count; first += DirectionSampler::kMostTogether) {
+      const std::size_t most = std::min(DirectionSampler::kMostTogether, count - first);
+      if (joint_.count + most > joint_.capacity) trace_pieces(point);  // before the bundle is filled anew
+      work_.sampler->draw(point, {stream, set, first, most, repeat}, bundle_);
+      if (above == Above::nothing) {
+        add_visible(set);
+        continue;
+      }
+      std::copy_n(bundle_.x.begin(), bundle_.count, joint_.x.begin() + as_offset(joint_.count));
+      std::copy_n(bundle_.y.begin(), bundle_.count, joint_.y.begin() + as_offset(joint_.count));
+      std::copy_n(bundle_.z.begin(), bundle_.count, joint_.z.begin() + as_offset(joint_.count));
+      for (int c = 0; c < work_.channels; ++c)
+        std::copy_n(bundle_.weight(c), bundle_.count, joint_.weight(c) + joint_.count);
+      joint_.count += bundle_.count;
+      pieces_.push_back({set, joint_.count});
+    }
   }
-  bundle_.count = kept;
-  basis_sums_.add(bundle_, sums);
+  trace_pieces(point);
+}
+
+/// Traces what has come together; what escapes goes back to the bundle, set by set. No branch depends on a ray.
+void PointBaker::trace_pieces(const trace::SurfacePoint& point) {
+  const Vec3 origin = point.position + point.clearance * point.geometric_normal;
+  work_.caster->occluded_from(origin, arrays(joint_), is_hit_.data());
+  std::size_t k = 0;
+  for (const Piece& piece : pieces_) {
+    std::size_t kept = 0;
+    for (; k < piece.end; ++k) {
+      bundle_.x[kept] = joint_.x[k];
+      bundle_.y[kept] = joint_.y[k];
+      bundle_.z[kept] = joint_.z[k];
+      for (int c = 0; c < work_.channels; ++c) bundle_.weight(c)[kept] = joint_.weight(c)[k];
+      kept += is_hit_[k] == 0 ? 1 : 0;
+    }
+    bundle_.count = kept;
+    add_visible(piece.set);
+  }
+  joint_.count = 0;
+  pieces_.clear();
+}
+
+/// The bundle escapes: it is all there is of the total, and of term 0.
+void PointBaker::add_visible(std::uint32_t set) {
+  double* const total = totals_.data() + set * width_;
+  if (work_.kept_terms == 0) return basis_sums_.add(bundle_, {total, size_});
+  std::fill(sums_.begin(), sums_.end(), 0.0);
+  basis_sums_.add(bundle_, {sums_.data(), size_});
+  for (std::size_t i = 0; i < size_; ++i) {
+    total[i] += sums_[i];
+    total[size_ + i] += sums_[i];
+  }
 }
 
 void PointBaker::add_walks(const trace::SurfacePoint& point, RandomNumbers& numbers) {

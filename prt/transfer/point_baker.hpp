@@ -57,10 +57,13 @@ class PointBaker {
   };
 
   [[nodiscard]] PointResult closed_form(const trace::SurfacePoint& point) const;
-  void add_set(const trace::SurfacePoint& point, std::uint64_t stream, std::uint32_t set,
-               std::uint32_t repeat, Above above);
+  void add_visible_sets(const trace::SurfacePoint& point, std::uint64_t stream, std::uint32_t repeat,
+                        Above above);
+  void trace_pieces(const trace::SurfacePoint& point);
+  void add_visible(std::uint32_t set);
+  void add_walk_set(const trace::SurfacePoint& point, std::uint64_t stream, std::uint32_t set,
+                    std::uint32_t repeat);
   [[nodiscard]] bool is_on_target(double count) const;
-  void add_visible(const trace::SurfacePoint& point, Above above);
   void add_walks(const trace::SurfacePoint& point, RandomNumbers& numbers);
   void walk_on(int bounce, RandomNumbers& numbers);
   [[nodiscard]] bool reflect(Walk& walk, int bounce, RandomNumbers& numbers, trace::Ray& next) const;
@@ -72,6 +75,12 @@ class PointBaker {
   std::size_t width_;  // of a set: [1 + kept terms][channel][bands^2]
   Bundle bundle_;
   Bundle escaped_;
+  Bundle joint_;  // directions of several sets on their way to the rays: long streams are fast
+  struct Piece {
+    std::uint32_t set;
+    std::size_t end;  // in joint_
+  };
+  std::vector<Piece> pieces_;
   BasisSums basis_sums_;
   std::vector<std::uint8_t> is_hit_;
   std::vector<trace::Hit> hits_;

@@ -19,16 +19,15 @@ Sets sets_of(Half half) {
 
 double standard_error(const std::vector<double>& values, std::size_t size, std::size_t i, Half half) {
   const Sets sets = sets_of(half);
-  double mean = 0.0;
-  double squares = 0.0;
-  int count = 0;
   const auto all = static_cast<int>(values.size() / size);
-  for (int set = sets.first; set < all; set += sets.step) {
-    const double value = values[static_cast<std::size_t>(set) * size + i];
-    const double difference = value - mean;
-    mean += difference / ++count;
-    squares += difference * (value - mean);
-  }
+  const auto value = [&](int set) { return values[static_cast<std::size_t>(set) * size + i]; };
+  double sum = 0.0;
+  int count = 0;
+  for (int set = sets.first; set < all; set += sets.step, ++count) sum += value(set);
+  const double mean = sum / count;
+  double squares = 0.0;
+  for (int set = sets.first; set < all; set += sets.step)
+    squares += (value(set) - mean) * (value(set) - mean);
   return count > 1 ? std::sqrt(squares / (static_cast<double>(count - 1) * all)) : 0.0;
 }
 

@@ -37,7 +37,8 @@ struct Transfer {
   std::vector<float> coefficients;     // [vertex][channel][bands^2]
   std::vector<float> standard_errors;  // the same shape, or empty: exact
   std::vector<Term> terms;             // k = 0 … : bounce k apart, as many as were asked for; often none
-  std::int64_t samples = 0;            // directions a vertex, the most of all vertices; 0: closed form
+  std::int64_t samples =
+      0;  // directions a vertex; the most that one drew, where an error was asked for; 0: closed form
   std::uint64_t seed = 0;
   Method method;
   double target_error = 0.0;     // that was asked for (bake.hpp); 0: none

@@ -283,11 +283,11 @@ void run_bounces(benchmark::State& state, int threads) {
     std::vector<double> shadowed;
     std::map<Solver, std::vector<double>> bounced;
     for (auto _ : state) {
-      const BakeSettings direct = settings_of(Kind::shadowed, 256, threads);
+      const BakeSettings direct = settings_of(Kind::shadowed, 1024, threads);
       shadowed.push_back(seconds_of([&] { benchmark::DoNotOptimize(transfer::bake(scene, direct)); }));
       state.SetIterationTime(shadowed.back());
       for (const Solver solver : {Solver::traced, Solver::iterative}) {
-        BakeSettings settings = settings_of(Kind::interreflected, 256, threads);
+        BakeSettings settings = settings_of(Kind::interreflected, 1024, threads);
         settings.max_bounces = 3;
         settings.method.solver = solver;
         bounced[solver].push_back(
@@ -314,6 +314,7 @@ constexpr Way kWays[] = {
      {Solver::traced, transfer::Sampling::cosine, transfer::DirectionSets::per_vertex},
      transfer::kSets},
     {"qmc", {Solver::traced, transfer::Sampling::qmc, transfer::DirectionSets::per_vertex}, transfer::kSets},
+    {"qmc-four-sets", {Solver::traced, transfer::Sampling::qmc, transfer::DirectionSets::per_vertex}, 4},
     {"qmc-one-set", {Solver::traced, transfer::Sampling::qmc, transfer::DirectionSets::per_vertex}, 1},
 };
 constexpr int kFewest = 64;
@@ -423,7 +424,7 @@ int register_rows() {
     add(fmt::format("bake/bunny/rays/threads:{}", threads), 3,
         [=](benchmark::State& state) { run_rays(state, threads); });
   }
-  add(fmt::format("bake/bunny/bounces/threads:{}", kThreads), 3,
+  add(fmt::format("bake/bunny/bounces/threads:{}", kThreads), 2,
       [](benchmark::State& state) { run_bounces(state, kThreads); });
   for (const char* scene : {"open-box", "bunny"}) {
     for (const Way& way : kWays) {

@@ -143,7 +143,7 @@ TEST(Directions, HaveTheCosineDensity) {
   double sum = 0.0;
   constexpr int kCount = 4096;
   for (std::uint64_t i = 0; i < kCount; ++i) {
-    const Vec3d w = cosine_direction(normal, shifted_lattice_point(i, random_shift(1, 2, 3)));
+    const Vec3d w = cosine_direction(normal, lattice_point(i, kCount, random_shift(1, 2, 3)));
     EXPECT_LE(std::abs(glm::length(w) - 1.0), 1e-14);
     sum += glm::dot(w, normal);
   }
