@@ -19,10 +19,6 @@ constexpr int kWhiteBounces = 16;  // before that, nothing but its albedos ends 
 // Choices of walks are other numbers than the shifts of sets.
 constexpr std::uint64_t kWalkSeed = 0xA0761D6478BD642FULL;
 
-std::ptrdiff_t as_offset(std::size_t count) {
-  return static_cast<std::ptrdiff_t>(count);
-}
-
 trace::DirectionArrays arrays(const Bundle& bundle) {
   return {bundle.x.data(), bundle.y.data(), bundle.z.data(), bundle.count};
 }
@@ -135,12 +131,7 @@ void PointBaker::add_visible_sets(const trace::SurfacePoint& point, std::uint64_
         add_visible(set);
         continue;
       }
-      std::copy_n(bundle_.x.begin(), bundle_.count, joint_.x.begin() + as_offset(joint_.count));
-      std::copy_n(bundle_.y.begin(), bundle_.count, joint_.y.begin() + as_offset(joint_.count));
-      std::copy_n(bundle_.z.begin(), bundle_.count, joint_.z.begin() + as_offset(joint_.count));
-      for (int c = 0; c < work_.channels; ++c)
-        std::copy_n(bundle_.weight(c), bundle_.count, joint_.weight(c) + joint_.count);
-      joint_.count += bundle_.count;
+      append(bundle_, joint_);
       pieces_.push_back({set, joint_.count});
     }
   }

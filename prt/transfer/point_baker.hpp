@@ -76,10 +76,6 @@ class PointBaker {
   Bundle bundle_;
   Bundle escaped_;
   Bundle joint_;  // directions of several sets on their way to the rays: long streams are fast
-  struct Piece {
-    std::uint32_t set;
-    std::size_t end;  // in joint_
-  };
   std::vector<Piece> pieces_;
   BasisSums basis_sums_;
   std::vector<std::uint8_t> is_hit_;

@@ -111,8 +111,8 @@ void report(const Options& options, const transfer::Plan& plan, const transfer::
                      transfer.above_target, transfer.vertices, transfer.samples));
   }
   if (options.json != "-") {
-    say(fmt::format("{}: {} transfer, {} vertices x {} bands, {} directions a vertex, {:.2f} s",
-                    options.output, options.kind, transfer.vertices, transfer.bands, transfer.samples,
+    say(fmt::format("{}: {} transfer, {} vertices x {} bands, {:.0f} directions a vertex, {:.2f} s",
+                    options.output, options.kind, transfer.vertices, transfer.bands, transfer.mean_samples,
                     seconds));
   }
   write_json(options.json, summary(options, plan, transfer, seconds));

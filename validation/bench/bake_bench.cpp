@@ -4,7 +4,8 @@
 //                                  bundles, in several call forms. `ratio` is the bake's rays per second over the best form's.
 // bake/bunny/bounces/threads:N     interreflected bakes of 3 bounces, both solvers, over the shadowed bake at equal samples
 // bake/error/SCENE/…/samples:N     seconds and root mean square error of the coefficients; `gain` is how many times longer the papers'
-//                                  way (one stratified grid on the sphere, shared by all vertices) takes to the same error
+//                                  directions (one stratified grid on the sphere, shared by all vertices) take to the same error with
+//                                  the same rays and sums, `gain on loop` the papers' loop over them, a ray at a time
 // bake/skip/SCENE                  what the plan saves (design: at least 10 on a convex mesh)
 #include <benchmark/benchmark.h>
 
@@ -23,12 +24,15 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "prt/sh/basis.hpp"
 #include "prt/transfer/bake.hpp"
 #include "prt/transfer/direction_sampler.hpp"
+#include "prt/transfer/directions.hpp"
 #include "reference/base/error.hpp"
 #include "reference/base/parallel.hpp"
 #include "reference/scene/builtin.hpp"
@@ -317,6 +321,7 @@ constexpr Way kWays[] = {
     {"qmc-four-sets", {Solver::traced, transfer::Sampling::qmc, transfer::DirectionSets::per_vertex}, 4},
     {"qmc-one-set", {Solver::traced, transfer::Sampling::qmc, transfer::DirectionSets::per_vertex}, 1},
 };
+constexpr const char* kLoop = "papers' loop";
 constexpr int kFewest = 64;
 constexpr int kMost = 4096;
 
@@ -348,6 +353,39 @@ Measured measure(const scene::Scene& scene, const Transfer& truth, const Way& wa
   return result;
 }
 
+/// The papers' loop: basis functions once a direction; at each vertex, of each direction above the horizon, a ray and a sum.
+Transfer bake_in_a_loop(const scene::Scene& scene, int bands, int samples, int threads) {
+  const int side = static_cast<int>(std::sqrt(samples));
+  const auto count = static_cast<std::size_t>(side * side);
+  std::vector<Vec3> directions;
+  std::vector<std::vector<double>> basis;
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    const glm::dvec2 jitter = transfer::random_shift(transfer::cell_seed(1, cell), 0, 0);
+    const auto at = glm::dvec2(static_cast<double>(cell % static_cast<std::size_t>(side)),
+                               static_cast<double>(cell / static_cast<std::size_t>(side)));
+    const Vec3d direction = transfer::sphere_direction((at + jitter) / static_cast<double>(side));
+    directions.emplace_back(direction);
+    basis.push_back(sh::evaluate_basis(bands, direction));
+  }
+  const trace::RayCaster caster(scene);
+  const std::vector<trace::SurfacePoint> points = trace::vertex_points(scene);
+  const auto size = static_cast<std::size_t>(bands * bands);
+  Transfer result;
+  result.coefficients.resize(points.size() * size);
+  parallel_for(points.size(), threads, [&](std::size_t v) {
+    std::vector<double> sum(size, 0.0);
+    for (std::size_t k = 0; k < count; ++k) {
+      const float cosine = glm::dot(directions[k], points[v].shading_normal);
+      if (!(cosine > 0.0F) || !(glm::dot(directions[k], points[v].geometric_normal) > 0.0F)) continue;
+      if (caster.is_occluded({trace::ray_origin(points[v], directions[k]), directions[k]})) continue;
+      for (std::size_t i = 0; i < size; ++i) sum[i] += static_cast<double>(cosine) * basis[k][i];
+    }
+    for (std::size_t i = 0; i < size; ++i)
+      result.coefficients[v * size + i] = static_cast<float>(4.0 * sum[i] / static_cast<double>(count));
+  });
+  return result;
+}
+
 /// Seconds of a curve at an error, by straight lines between its points on logarithmic axes, extended at both ends.
 double seconds_at(const std::vector<Measured>& curve, double error) {
   std::size_t k = 0;
@@ -370,6 +408,11 @@ const Curves& curves_of(const std::string& name, int threads) {
   exact.is_skipping = false;
   const Transfer truth = transfer::bake(scene, exact);
   for (int samples = kFewest; samples <= kMost; samples *= 4) {
+    Measured loop;
+    Transfer baked;
+    loop.seconds = seconds_of([&] { baked = bake_in_a_loop(scene, exact.bands, samples, threads); });
+    loop.rmse = rmse(baked, truth);
+    curves[kLoop].push_back(loop);
     for (const Way& way : kWays) curves[way.name].push_back(measure(scene, truth, way, samples, threads));
   }
   return curves;
@@ -384,6 +427,7 @@ void run_error(benchmark::State& state, const std::string& scene, const Way& way
       const Measured& here = curves.at(way.name)[place];
       state.SetIterationTime(here.seconds);
       state.counters["rmse"] = here.rmse;
+      state.counters["gain on loop"] = seconds_at(curves.at(kLoop), here.rmse) / here.seconds;
       state.counters["gain"] = seconds_at(curves.at(kPapers.name), here.rmse) / here.seconds;
     }
   } catch (const InputError& error) {
