@@ -48,10 +48,14 @@ std::size_t coefficients(int bands) {
   return static_cast<std::size_t>(sh::coefficient_count(bands));
 }
 
-DirectionSampler make_sampler(const BakeSettings& settings) {
-  return {settings.method.sampling, settings.method.directions, settings.seed,
-          static_cast<std::size_t>(settings.samples / settings.sets),
-          static_cast<std::uint32_t>(settings.sets)};
+/// One of the size asked for; with a target error others behind it, each of twice the size of the one before.
+std::vector<DirectionSampler> make_samplers(const BakeSettings& settings) {
+  std::vector<DirectionSampler> samplers;
+  for (std::int64_t size = settings.samples / settings.sets;; size *= 2) {
+    samplers.emplace_back(settings.method.sampling, settings.method.directions, settings.seed,
+                          static_cast<std::size_t>(size), static_cast<std::uint32_t>(settings.sets));
+    if (settings.target_error == 0.0 || 4 * size * settings.sets > kMostSamples) return samplers;
+  }
 }
 
 /// One of the parts that PointBaker gives.
@@ -119,13 +123,19 @@ void bake_points(const PointWork& work, const std::vector<trace::SurfacePoint>& 
     }
   });
   result.above_target = above_target;
-  result.samples = static_cast<std::int64_t>(work.sampler->set_size()) * work.sets;
+  result.samples = static_cast<std::int64_t>(work.samplers->front().set_size()) * work.sets;
   double sum = 0.0;
   for (const std::int64_t count : samples) {
     result.samples = std::max(result.samples, count);
     sum += static_cast<double>(count);
   }
   result.mean_samples = sum / static_cast<double>(std::max<std::size_t>(1, result.vertices));
+}
+
+/// Whether anything may be above any vertex.
+bool needs_rays(const Plan& plan) {
+  return plan.above.empty() ||
+         std::find(plan.above.begin(), plan.above.end(), Above::something) != plan.above.end();
 }
 
 /// Whether the three channels of all vectors are the same bits.
@@ -189,10 +199,10 @@ PointTransfer shadowed_transfer(const trace::RayCaster& caster, const trace::Sur
   settings.seed = seed;
   require_valid(settings);
   const sh::BatchBasis<float> basis(bands);
-  const DirectionSampler sampler = make_sampler(settings);
+  const std::vector<DirectionSampler> samplers = make_samplers(settings);
   PointWork work;
   work.caster = &caster;
-  work.sampler = &sampler;
+  work.samplers = &samplers;
   work.basis = &basis;
   work.seed = seed;
   return part_of(PointBaker(work).run(point, stream, Above::something).statistics, 0, coefficients(bands));
@@ -206,13 +216,13 @@ PointTerms interreflected_transfer(const scene::Scene& scene, const trace::RayCa
   BakeSettings reflecting = settings;
   reflecting.kind = Kind::interreflected;
   const sh::BatchBasis<float> basis(settings.bands);
-  const DirectionSampler sampler = make_sampler(settings);
+  const std::vector<DirectionSampler> samplers = make_samplers(settings);
   const trace::SurfaceTable surfaces(scene);
   PointTerms result;
   result.channels = is_gray(scene) ? 1 : 3;
   const PointWork work{&caster,
                        &surfaces,
-                       &sampler,
+                       &samplers,
                        &basis,
                        settings.seed,
                        settings.method.directions,
@@ -259,9 +269,10 @@ Transfer bake(const scene::Scene& scene, const BakeSettings& settings, const Pla
     bake_unshadowed(points, settings, result);
     return result;
   }
-  const DirectionSampler sampler = make_sampler(settings);
+  const std::vector<DirectionSampler> samplers = make_samplers(settings);
   const sh::BatchBasis<float> basis(settings.bands);
-  const trace::RayCaster caster(scene);
+  std::optional<trace::RayCaster> caster;
+  if (needs_rays(plan)) caster.emplace(scene);
   std::optional<trace::SurfaceTable> surfaces;
   if (plan.is_reflecting) surfaces.emplace(scene);
   result.target_error = settings.target_error;
@@ -271,13 +282,13 @@ Transfer bake(const scene::Scene& scene, const BakeSettings& settings, const Pla
   const double allowed_error = settings.target_error * unshadowed_norm(settings.bands);
   if (plan.is_reflecting && settings.method.solver == Solver::iterative) {
     solve_iteratively(
-        {&scene, &caster, &*surfaces, &sampler, &basis, &points, &plan.above, settings.max_bounces, kept,
-         settings.sets, allowed_error, settings.threads, settings.progress},
+        {&scene, &*caster, &*surfaces, &samplers.front(), &basis, &points, &plan.above, settings.max_bounces,
+         kept, settings.sets, allowed_error, settings.threads, settings.progress},
         result);
   } else {
-    bake_points({&caster, surfaces ? &*surfaces : nullptr, &sampler, &basis, settings.seed,
-                 settings.method.directions, result.channels, plan.is_reflecting ? result.bounces : 0, kept,
-                 settings.sets, allowed_error},
+    bake_points({caster ? &*caster : nullptr, surfaces ? &*surfaces : nullptr, &samplers, &basis,
+                 settings.seed, settings.method.directions, result.channels,
+                 plan.is_reflecting ? result.bounces : 0, kept, settings.sets, allowed_error},
                 points, plan, settings, result);
   }
   merge_equal_channels(result);

@@ -12,8 +12,8 @@ namespace {
 // 48 MiB.
 constexpr std::size_t kMostKept = std::size_t{1} << 22U;
 
-/// Keeps the directions that leave the surface, in their order. Lattice and grids have all weights the same, or in place.
-void keep_leaving(const trace::SurfacePoint& point, std::size_t count, Bundle& bundle) {
+/// Keeps the directions on one side of the geometric plane, in their order.
+void keep_side(const trace::SurfacePoint& point, bool is_leaving, std::size_t count, Bundle& bundle) {
   const Vec3 g = point.geometric_normal;
   std::size_t kept = 0;
   for (std::size_t k = 0; k < count; ++k) {
@@ -23,7 +23,7 @@ void keep_leaving(const trace::SurfacePoint& point, std::size_t count, Bundle& b
     bundle.x[kept] = x;
     bundle.y[kept] = y;
     bundle.z[kept] = z;
-    kept += x * g.x + y * g.y + z * g.z > 0.0F ? 1 : 0;
+    kept += (x * g.x + y * g.y + z * g.z > 0.0F) == is_leaving ? 1 : 0;
   }
   bundle.count = kept;
 }
@@ -56,22 +56,23 @@ DirectionSampler::DirectionSampler(Sampling sampling, DirectionSets sets, std::u
   }
 }
 
-void DirectionSampler::draw(const trace::SurfacePoint& point, const Place& place, Bundle& bundle) const {
+void DirectionSampler::draw(const trace::SurfacePoint& point, const Place& place, Bundle& bundle,
+                            Side side) const {
   Place mine = place;
   if (sets_ == DirectionSets::shared) mine.stream = 0;
-  mine.randomisation += mine.repeat * kRepeatedSets;
+  mine.randomisation += mine.round * kSetsARound;
   switch (sampling_) {
     case Sampling::qmc:
-      return draw_lattice(point, mine, bundle);
+      return draw_lattice(point, mine, side, bundle);
     case Sampling::cosine:
-      return draw_cosine_grid(point, mine, bundle);
+      return draw_cosine_grid(point, mine, side, bundle);
     case Sampling::uniform:
-      return draw_uniform_grid(point, mine, bundle);
+      return draw_uniform_grid(point, mine, side, bundle);
   }
 }
 
 // Azimuths and steps from point `first` on are those from 0 on, turned and moved.
-void DirectionSampler::draw_lattice(const trace::SurfacePoint& point, const Place& place,
+void DirectionSampler::draw_lattice(const trace::SurfacePoint& point, const Place& place, Side side,
                                     Bundle& bundle) const {
   const glm::dvec2 shift = random_shift(seed_, place.stream, place.randomisation);
   const double azimuth = 2.0 * kPi * (shift.x + static_cast<double>(place.first) * kGoldenTurn);
@@ -90,7 +91,7 @@ void DirectionSampler::draw_lattice(const trace::SurfacePoint& point, const Plac
       (place.count + sh::kBlockDirections - 1) / sh::kBlockDirections * sh::kBlockDirections;
   lattice_directions(frame, cosine_.data(), sine_.data(), height_.data(), whole, bundle.x.data(),
                      bundle.y.data(), bundle.z.data());
-  keep_leaving(point, place.count, bundle);
+  keep_side(point, side == Side::leaving, place.count, bundle);
   set_weights(bundle, 1.0F);
 }
 
@@ -111,7 +112,7 @@ void DirectionSampler::keep_sphere(std::uint32_t sets) {
   }
 }
 
-void DirectionSampler::draw_cosine_grid(const trace::SurfacePoint& point, const Place& place,
+void DirectionSampler::draw_cosine_grid(const trace::SurfacePoint& point, const Place& place, Side side,
                                         Bundle& bundle) const {
   const Vec3d normal(point.shading_normal);
   const std::size_t rows = set_size_ / columns_;
@@ -125,12 +126,12 @@ void DirectionSampler::draw_cosine_grid(const trace::SurfacePoint& point, const 
     bundle.y[k] = direction.y;
     bundle.z[k] = direction.z;
   }
-  keep_leaving(point, place.count, bundle);
+  keep_side(point, side == Side::leaving, place.count, bundle);
   set_weights(bundle, 1.0F);
 }
 
 // (1/pi) integral = (1/pi) (4 pi / N) sum: the weight is 4 max(0, n.w).
-void DirectionSampler::draw_uniform_grid(const trace::SurfacePoint& point, const Place& place,
+void DirectionSampler::draw_uniform_grid(const trace::SurfacePoint& point, const Place& place, Side side,
                                          Bundle& bundle) const {
   std::size_t kept = 0;
   const std::size_t start = place.randomisation * set_size_ + place.first;
@@ -139,7 +140,8 @@ void DirectionSampler::draw_uniform_grid(const trace::SurfacePoint& point, const
     const Vec3 direction =
         is_kept ? sphere_[start + k] : on_sphere(place.first + k, place.stream, place.randomisation);
     const float cosine = glm::dot(direction, point.shading_normal);
-    if (!(cosine > 0.0F) || !(glm::dot(direction, point.geometric_normal) > 0.0F)) continue;
+    const bool is_leaving = glm::dot(direction, point.geometric_normal) > 0.0F;
+    if (!(cosine > 0.0F) || is_leaving != (side == Side::leaving)) continue;
     bundle.x[kept] = direction.x;
     bundle.y[kept] = direction.y;
     bundle.z[kept] = direction.z;

@@ -27,20 +27,25 @@ class DirectionSampler {
 
   struct Place {
     std::uint64_t stream = 0;
-    std::uint32_t randomisation = 0;  // below kRepeatedSets where there are repeats
+    std::uint32_t randomisation = 0;  // below kSetsARound where there are rounds
     std::size_t first = 0;            // of the set
     std::size_t count = 0;            // <= kMostTogether
-    std::uint32_t repeat = 0;         // as many directions again, drawn anew
+    std::uint32_t round = 0;          // sets of different rounds are independent
   };
-  static constexpr std::uint32_t kRepeatedSets = 64;
-  /// Fills the bundle (all channels alike) with those of the directions that leave the point's surface, above its geometric
-  /// and its shading plane. The sum of weight y over a set, over set_size(), estimates (1/pi) integral y max(0, n.w) dw.
-  void draw(const trace::SurfacePoint& point, const Place& place, Bundle& bundle) const;
+  static constexpr std::uint32_t kSetsARound = 64;
+  /// Which directions above the shading plane are wanted: those that leave the surface, above its geometric plane, or those
+  /// that the surface itself blocks.
+  enum class Side { leaving, blocked };
+  /// Fills the bundle (all channels alike) with the directions wanted. The sum of weight y over a set, over set_size(), estimates (1/pi) integral y max(0, n.w) dw.
+  void draw(const trace::SurfacePoint& point, const Place& place, Bundle& bundle,
+            Side side = Side::leaving) const;
 
  private:
-  void draw_lattice(const trace::SurfacePoint& point, const Place& place, Bundle& bundle) const;
-  void draw_cosine_grid(const trace::SurfacePoint& point, const Place& place, Bundle& bundle) const;
-  void draw_uniform_grid(const trace::SurfacePoint& point, const Place& place, Bundle& bundle) const;
+  void draw_lattice(const trace::SurfacePoint& point, const Place& place, Side side, Bundle& bundle) const;
+  void draw_cosine_grid(const trace::SurfacePoint& point, const Place& place, Side side,
+                        Bundle& bundle) const;
+  void draw_uniform_grid(const trace::SurfacePoint& point, const Place& place, Side side,
+                         Bundle& bundle) const;
 
   [[nodiscard]] Vec3 on_sphere(std::size_t cell, std::uint64_t stream, std::uint32_t randomisation) const;
   void keep_sphere(std::uint32_t sets);

@@ -1,6 +1,7 @@
 #include "prt/transfer/horizon.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 namespace plumbline::transfer {
 namespace {
@@ -27,6 +28,12 @@ Horizon::Horizon(const scene::Scene& scene) {
   for (std::size_t v = 0; v < is_used.size(); ++v) {
     if (is_used[v]) positions_.push_back(scene.positions[v]);
   }
+  // Faceted meshes have every position many times.
+  const auto is_before = [](const Vec3& a, const Vec3& b) {
+    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+  };
+  std::sort(positions_.begin(), positions_.end(), is_before);
+  positions_.erase(std::unique(positions_.begin(), positions_.end()), positions_.end());
   boxes_.reserve(positions_.size() / kLeaf * 4 + 1);
   if (!positions_.empty()) build(0, static_cast<std::uint32_t>(positions_.size()));
 }

@@ -132,7 +132,7 @@ class SetSolution {
   template <class Body>
   void for_points(const Body& body) const;
   [[nodiscard]] Above above(std::size_t point) const;
-  void set_first_term(std::size_t place, std::size_t point, const std::vector<double>& values, double scale);
+  void set_first_term(std::size_t place, std::size_t point, const std::vector<double>& values);
   void trace_group(std::uint32_t first_set);
   void trace_point(std::size_t point, std::uint32_t first_set, Tracing& tracing);
   void trace_pieces(const trace::SurfacePoint& point, Tracing& tracing) const;
@@ -220,11 +220,10 @@ Above SetSolution::above(std::size_t point) const {
   return point < work_.above->size() ? (*work_.above)[point] : Above::something;
 }
 
-void SetSolution::set_first_term(std::size_t place, std::size_t point, const std::vector<double>& values,
-                                 double scale) {
+void SetSolution::set_first_term(std::size_t place, std::size_t point, const std::vector<double>& values) {
   for (int c = 0; c < channels_; ++c) {
     float* out = first_[place].data() + point * width_ + static_cast<std::size_t>(c) * row_;
-    for (std::size_t i = 0; i < count_; ++i) out[i] = static_cast<float>(values[i] * scale);
+    for (std::size_t i = 0; i < count_; ++i) out[i] = static_cast<float>(values[i]);
   }
 }
 
@@ -238,23 +237,28 @@ void SetSolution::trace_point(std::size_t p, std::uint32_t first_set, Tracing& t
     for (std::size_t first = 0; first < size && !is_flat; first += DirectionSampler::kMostTogether) {
       const std::size_t most = std::min(DirectionSampler::kMostTogether, size - first);
       if (tracing.joint.count + most > tracing.joint.capacity) trace_pieces(point, tracing);
-      work_.sampler->draw(point, {p, first_set + place, first, most, 0}, tracing.bundle);
+      const DirectionSampler::Place drawn{p, first_set + place, first, most, 0};
       if (above(p) == Above::nothing) {
+        work_.sampler->draw(point, drawn, tracing.bundle, DirectionSampler::Side::blocked);
         tracing.basis_sums.add(tracing.bundle, tracing.sums[place]);
         continue;
       }
+      work_.sampler->draw(point, drawn, tracing.bundle);
       append(tracing.bundle, tracing.joint);
       tracing.pieces.push_back({place, tracing.joint.count});
     }
   }
   trace_pieces(point, tracing);
-  const std::vector<double> exact =
-      is_flat ? unshadowed_transfer(work_.basis->bands(), point.shading_normal) : std::vector<double>();
   for (std::size_t place = 0; place < together_; ++place) {
     const std::vector<StoredHit>& stored = tracing.stored[place];
     hits_[place * sides_.points.size() + p].assign(stored.begin(), stored.end());
-    set_first_term(place, p, is_flat ? exact : tracing.sums[place],
-                   is_flat ? 1.0 : 1.0 / static_cast<double>(size));
+    std::vector<double>& term = tracing.sums[place];
+    for (double& value : term) value /= static_cast<double>(size);
+    if (above(p) != Above::something) {  // what was summed is what the surface itself blocks
+      const std::vector<double> exact = unshadowed_transfer(work_.basis->bands(), point.shading_normal);
+      for (std::size_t i = 0; i < term.size(); ++i) term[i] = exact[i] - term[i];
+    }
+    set_first_term(place, p, term);
   }
 }
 

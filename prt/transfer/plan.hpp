@@ -13,8 +13,9 @@ namespace plumbline::transfer {
 
 struct BakeSettings;
 
-/// What is above a point. something: rays tell. nothing: no ray can meet anything, directions are drawn and none is traced.
-/// nothing_flat: besides, the shading normal is that of the plane, and the vector has its closed form.
+/// What is above a point. something: rays tell. nothing: no ray can meet anything; the vector is its closed form less what the
+/// surface's own plane cuts off, and that alone is sampled. nothing_flat: besides, the shading normal is that of the plane,
+/// which cuts off nothing.
 enum class Above : std::uint8_t { something, nothing, nothing_flat };
 
 /// One thing left out, for people and for JSON.

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "prt/sh/basis.hpp"
+#include "prt/sh/zonal.hpp"
 #include "prt/transfer/bake.hpp"
 
 namespace plumbline::transfer {
@@ -45,6 +46,8 @@ PointBaker::PointBaker(const PointWork& work)
       escaped_(DirectionSampler::kMostTogether, work.channels),
       joint_(DirectionSampler::kMostTogether, work.channels),
       basis_sums_(*work.basis, work.channels),
+      exact_basis_(work.basis->bands()),
+      exact_(static_cast<std::size_t>(exact_basis_.coefficient_count())),
       is_hit_(bundle_.capacity),
       hits_(work.surfaces != nullptr ? bundle_.capacity : 0),
       totals_(static_cast<std::size_t>(work.sets) * width_),
@@ -55,47 +58,63 @@ PointBaker::PointBaker(const PointWork& work)
 PointResult PointBaker::run(const trace::SurfacePoint& point, std::uint64_t stream, Above above) {
   if (above == Above::nothing_flat) return closed_form(point);
   std::fill(totals_.begin(), totals_.end(), 0.0);
-  const std::size_t set_size = work_.sampler->set_size();
   PointResult result;
-  std::uint32_t repeats = 0;
-  for (std::uint32_t wanted = 1;; wanted *= 2) {
-    for (; repeats < wanted; ++repeats) {
-      if (work_.surfaces == nullptr || above == Above::nothing) {
-        add_visible_sets(point, stream, repeats, above);
-        continue;
-      }
+  std::size_t count = 0;
+  // Rounds of 1, 1, 2, 4, … times the first: every one doubles what there is, by a larger and so better spread set.
+  for (std::uint32_t round = 0;; ++round) {
+    sampler_ = &(*work_.samplers)[round == 0 ? 0 : round - 1];
+    if (work_.surfaces == nullptr || above == Above::nothing) {
+      add_visible_sets(point, stream, round, above);
+    } else {
       for (std::uint32_t set = 0; set < static_cast<std::uint32_t>(work_.sets); ++set)
-        add_walk_set(point, stream, set, repeats);
+        add_walk_set(point, stream, set, round);
     }
-    result.samples = static_cast<std::int64_t>(repeats * set_size) * work_.sets;
+    count += sampler_->set_size();
     if (work_.allowed_error == 0.0) break;
-    result.is_on_target = is_on_target(static_cast<double>(repeats * set_size));
-    if (result.is_on_target || 2 * result.samples > kMostSamples) break;
+    result.is_on_target = is_on_target(static_cast<double>(count));
+    if (result.is_on_target || round == work_.samplers->size()) break;
   }
-  result.statistics = statistics_of(totals_, width_, static_cast<double>(repeats * set_size),
+  result.samples = static_cast<std::int64_t>(count) * work_.sets;
+  result.statistics = statistics_of(totals_, width_, static_cast<double>(count),
                                     work_.allowed_error == 0.0 ? Half::all : Half::odd);
+  if (above == Above::nothing) take_from_closed_form(point, result.statistics);
   return result;
 }
 
 /// Nothing is above the plane, and the cosine is about its normal. Nothing bounces.
-PointResult PointBaker::closed_form(const trace::SurfacePoint& point) const {
-  const std::vector<double> exact = unshadowed_transfer(work_.basis->bands(), point.shading_normal);
+PointResult PointBaker::closed_form(const trace::SurfacePoint& point) {
   PointResult result{{std::vector<double>(width_, 0.0), std::vector<double>(width_, 0.0)}, 0, true};
-  const std::size_t filled = work_.kept_terms > 0 ? 2 * size_ : size_;  // the total and term 0
-  for (std::size_t i = 0; i < filled; ++i) result.statistics.mean[i] = exact[i % exact.size()];
+  take_from_closed_form(point, result.statistics);
   return result;
 }
 
+/// Nothing is above the plane: what was summed is what the surface itself blocks of an unshadowed vector, T_lm = A_l y_lm / pi.
+void PointBaker::take_from_closed_form(const trace::SurfacePoint& point, SetStatistics& statistics) {
+  const int bands = exact_basis_.bands();
+  const Vec3d normal = glm::normalize(Vec3d(point.shading_normal));
+  exact_basis_.evaluate(normal.x, normal.y, normal.z, exact_);
+  const std::size_t filled = work_.kept_terms > 0 ? 2 * size_ : size_;  // the total and term 0
+  for (std::size_t first = 0; first < filled; first += exact_.size()) {
+    for (int l = 0; l < bands; ++l) {
+      const double factor = sh::clamped_cosine_factor(l) / kPi;
+      for (int i = sh::index(l, -l); i <= sh::index(l, l); ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        statistics.mean[first + at] = factor * exact_[at] - statistics.mean[first + at];
+      }
+    }
+  }
+}
+
 void PointBaker::add_walk_set(const trace::SurfacePoint& point, std::uint64_t stream, std::uint32_t set,
-                              std::uint32_t repeat) {
-  const std::size_t count = work_.sampler->set_size();
+                              std::uint32_t round) {
+  const std::size_t count = sampler_->set_size();
   std::fill(sums_.begin(), sums_.end(), 0.0);
   RandomNumbers numbers(work_.seed ^ kWalkSeed, work_.directions == DirectionSets::shared ? 0 : stream,
-                        set + repeat * DirectionSampler::kRepeatedSets);
+                        set + round * DirectionSampler::kSetsARound);
   for (std::size_t first = 0; first < count; first += DirectionSampler::kMostTogether) {
-    work_.sampler->draw(
-        point, {stream, set, first, std::min(DirectionSampler::kMostTogether, count - first), repeat},
-        bundle_);
+    sampler_->draw(point,
+                   {stream, set, first, std::min(DirectionSampler::kMostTogether, count - first), round},
+                   bundle_);
     add_walks(point, numbers);
   }
   for (std::size_t i = size_; i < width_; ++i) sums_[i % size_] += sums_[i];
@@ -117,20 +136,21 @@ bool PointBaker::is_on_target(double count) const {
   return true;
 }
 
-void PointBaker::add_visible_sets(const trace::SurfacePoint& point, std::uint64_t stream,
-                                  std::uint32_t repeat, Above above) {
-  const std::size_t count = work_.sampler->set_size();
+void PointBaker::add_visible_sets(const trace::SurfacePoint& point, std::uint64_t stream, std::uint32_t round,
+                                  Above above) {
+  const std::size_t count = sampler_->set_size();
   joint_.count = 0;
   pieces_.clear();
   for (std::uint32_t set = 0; set < static_cast<std::uint32_t>(work_.sets); ++set) {
     for (std::size_t first = 0; first < count; first += DirectionSampler::kMostTogether) {
       const std::size_t most = std::min(DirectionSampler::kMostTogether, count - first);
       if (joint_.count + most > joint_.capacity) trace_pieces(point);  // before the bundle is filled anew
-      work_.sampler->draw(point, {stream, set, first, most, repeat}, bundle_);
       if (above == Above::nothing) {
+        sampler_->draw(point, {stream, set, first, most, round}, bundle_, DirectionSampler::Side::blocked);
         add_visible(set);
         continue;
       }
+      sampler_->draw(point, {stream, set, first, most, round}, bundle_);
       append(bundle_, joint_);
       pieces_.push_back({set, joint_.count});
     }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "prt/sh/basis.hpp"
 #include "prt/sh/batch.hpp"
 #include "prt/transfer/basis_sums.hpp"
 #include "prt/transfer/bundle.hpp"
@@ -20,8 +21,8 @@ namespace plumbline::transfer {
 /// What all points of a bake share; outlives its bakers.
 struct PointWork {
   const trace::RayCaster* caster = nullptr;
-  const trace::SurfaceTable* surfaces = nullptr;  // nullptr: nothing reflects, visibility is enough
-  const DirectionSampler* sampler = nullptr;
+  const trace::SurfaceTable* surfaces = nullptr;            // nullptr: nothing reflects, visibility is enough
+  const std::vector<DirectionSampler>* samplers = nullptr;  // make_samplers()
   const sh::BatchBasis<float>* basis = nullptr;
   std::uint64_t seed = 0;
   DirectionSets directions = DirectionSets::per_vertex;
@@ -56,13 +57,14 @@ class PointBaker {
     Rgb throughput{1.0F};
   };
 
-  [[nodiscard]] PointResult closed_form(const trace::SurfacePoint& point) const;
-  void add_visible_sets(const trace::SurfacePoint& point, std::uint64_t stream, std::uint32_t repeat,
+  [[nodiscard]] PointResult closed_form(const trace::SurfacePoint& point);
+  void take_from_closed_form(const trace::SurfacePoint& point, SetStatistics& statistics);
+  void add_visible_sets(const trace::SurfacePoint& point, std::uint64_t stream, std::uint32_t round,
                         Above above);
   void trace_pieces(const trace::SurfacePoint& point);
   void add_visible(std::uint32_t set);
   void add_walk_set(const trace::SurfacePoint& point, std::uint64_t stream, std::uint32_t set,
-                    std::uint32_t repeat);
+                    std::uint32_t round);
   [[nodiscard]] bool is_on_target(double count) const;
   void add_walks(const trace::SurfacePoint& point, RandomNumbers& numbers);
   void walk_on(int bounce, RandomNumbers& numbers);
@@ -71,13 +73,16 @@ class PointBaker {
   void add_escaped(int bounce);
 
   PointWork work_;
-  std::size_t size_;   // of a term: channels x bands^2
-  std::size_t width_;  // of a set: [1 + kept terms][channel][bands^2]
+  const DirectionSampler* sampler_ = nullptr;  // of the round
+  std::size_t size_;                           // of a term: channels x bands^2
+  std::size_t width_;                          // of a set: [1 + kept terms][channel][bands^2]
   Bundle bundle_;
   Bundle escaped_;
   Bundle joint_;  // directions of several sets on their way to the rays: long streams are fast
   std::vector<Piece> pieces_;
   BasisSums basis_sums_;
+  sh::Basis<double> exact_basis_;
+  std::vector<double> exact_;  // scratch: one direction's
   std::vector<std::uint8_t> is_hit_;
   std::vector<trace::Hit> hits_;
   std::vector<Walk> walks_;

@@ -89,47 +89,47 @@ TEST(Horizon, AgreesWithEveryVertexAsked) {
   EXPECT_GT(empty, 0U);
 }
 
-// Curved convex: the same directions, no rays, the same bits.
+// Flat: the closed form. Curved: the closed form less what the surface itself blocks. Both within the errors of what they replace.
 TEST(Plan, LeavesOutRaysThatMeetNothing) {
-  const scene::Scene ball = make_ball(false);
-  for (const Solver solver : {Solver::traced, Solver::iterative}) {
-    for (const Kind kind : {Kind::shadowed, Kind::interreflected}) {
-      const BakeSettings settings = settings_of(kind, solver);
-      EXPECT_EQ(count_of(plan_of(ball, settings), Above::nothing), ball.positions.size());
+  for (const bool is_faceted : {true, false}) {
+    const scene::Scene ball = make_ball(is_faceted);
+    const std::vector<trace::SurfacePoint> points = trace::vertex_points(ball);
+    for (const Solver solver : {Solver::traced, Solver::iterative}) {
+      const BakeSettings settings =
+          settings_of(solver == Solver::traced ? Kind::shadowed : Kind::interreflected, solver);
+      EXPECT_EQ(count_of(plan_of(ball, settings), is_faceted ? Above::nothing_flat : Above::nothing),
+                ball.positions.size());
       const Both both = bake_both(ball, settings);
-      if (kind == Kind::shadowed || solver == Solver::traced) {
-        EXPECT_EQ(both.with.coefficients, both.without.coefficients);
-        EXPECT_EQ(both.with.standard_errors, both.without.standard_errors);
-        EXPECT_EQ(both.with.terms, both.without.terms);
+      double squares = 0.0;
+      double other_sign = 0.0;
+      double count = 0.0;
+      for (std::size_t v = 0; v < both.with.vertices; ++v) {
+        const std::vector<double> exact = unshadowed_transfer(4, points[v].shading_normal);
+        for (std::size_t i = 0; i < 16; ++i) {
+          const auto with = static_cast<double>(both.with.vector(v, 0)[i]);
+          const auto without = static_cast<double>(both.without.vector(v, 0)[i]);
+          const auto error = static_cast<double>(both.with.row_of(both.with.standard_errors, v, 0)[i]);
+          const auto old_error =
+              static_cast<double>(both.without.row_of(both.without.standard_errors, v, 0)[i]);
+          if (is_faceted) {
+            EXPECT_EQ(both.with.vector(v, 0)[i], static_cast<float>(exact[i]));
+            EXPECT_EQ(error, 0.0);
+          }
+          // The two share their directions, so that their difference is what the old one's smooth part errs by.
+          const double scale = std::max(1e-6, std::hypot(error, old_error));
+          squares += std::pow((with - without) / scale, 2);
+          other_sign += std::pow((2.0 * exact[i] - with - without) / scale, 2);
+          count += 1.0;
+        }
       }
-      for (std::size_t i = 0; i < both.with.coefficients.size(); ++i)
-        EXPECT_LE(std::abs(both.with.coefficients[i] - both.without.coefficients[i]), 1e-6F);
+      // Student's t with 15 degrees of freedom has mean square 15/13; coefficients without noise, and noise that both share,
+      // make it less. 15360 or 2592 numbers, 16 of a vertex at worst all alike: + 5 standard deviations is 0.6 at most.
+      EXPECT_LE(squares / count, 15.0 / 13.0 + 0.6) << is_faceted << ' ' << to_string(solver);
+      if (!is_faceted) {
+        EXPECT_GT(other_sign / count, 3.0);  // the blocked part added instead of taken off
+      }
     }
   }
-}
-
-// Flat convex: the closed form, within the errors of what it replaces.
-TEST(Plan, TakesClosedFormsWhereFacesAreFlat) {
-  const scene::Scene ball = make_ball(true);
-  const BakeSettings settings = settings_of(Kind::shadowed);
-  EXPECT_EQ(count_of(plan_of(ball, settings), Above::nothing_flat), ball.positions.size());
-  const Both both = bake_both(ball, settings);
-  double squares = 0.0;
-  std::size_t count = 0;
-  for (std::size_t v = 0; v < both.with.vertices; ++v) {
-    const std::vector<double> exact = unshadowed_transfer(4, trace::vertex_points(ball)[v].shading_normal);
-    for (std::size_t i = 0; i < 16; ++i) {
-      EXPECT_EQ(both.with.vector(v, 0)[i], static_cast<float>(exact[i]));
-      EXPECT_EQ(both.with.row_of(both.with.standard_errors, v, 0)[i], 0.0F);
-      const double error =
-          std::max(1e-6, static_cast<double>(both.without.row_of(both.without.standard_errors, v, 0)[i]));
-      squares += std::pow((static_cast<double>(both.without.vector(v, 0)[i]) - exact[i]) / error, 2);
-      count += i > 0 ? 1 : 0;  // the first coefficient has no noise
-    }
-  }
-  // t with 15 degrees of freedom has variance 15/13 and fourth moment 3 x 225/(13 x 11) = 4.72: the mean square of 15360 of
-  // them, neighbours' independent, is 1.154 +- 5 x 0.015, coefficients of one vertex at worst all alike: 5 x 0.06.
-  EXPECT_LE(std::abs(squares / static_cast<double>(count) - 15.0 / 13.0), 0.3);
 }
 
 TEST(Plan, LeavesOutBouncesOfBlackScenes) {

@@ -76,7 +76,7 @@ TEST(DirectionSampler, EstimatesTheConvolvedCosine) {
   }
 }
 
-TEST(DirectionSampler, RepeatsAreDrawnAnew) {
+TEST(DirectionSampler, RoundsAreDrawnAnew) {
   const trace::SurfacePoint point = trace::free_point(Vec3(0.0F), Vec3(0, 0, 1));
   for (const Sampling kind : kKinds) {
     const DirectionSampler sampler(kind, DirectionSets::per_vertex, 7, 64);
