@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <optional>
 
 #include "prt/sh/basis.hpp"
 #include "prt/sh/zonal.hpp"
@@ -20,8 +22,16 @@ constexpr std::size_t kBlock = 64;  // vertices a task
 
 void require_valid(const BakeSettings& settings) {
   sh::require_bands(settings.bands);
-  if (settings.samples < kSets || settings.samples > (1 << 26))
-    throw InputError(fmt::format("samples: expected {} to {}, got {}", kSets, 1 << 26, settings.samples));
+  if (settings.sets < 1 || settings.sets > kMostSets)
+    throw InputError(fmt::format("sets: expected 1 to {}, got {}", kMostSets, settings.sets));
+  if (settings.target_error > 0.0 && settings.sets < 4)
+    throw InputError(fmt::format("sets: a target error needs 4 or more, got {}", settings.sets));
+  if (settings.samples < settings.sets || settings.samples > (1 << 26)) {
+    throw InputError(
+        fmt::format("samples: expected {} to {}, got {}", settings.sets, 1 << 26, settings.samples));
+  }
+  if (!(settings.target_error >= 0.0) || !std::isfinite(settings.target_error))
+    throw InputError(fmt::format("target error: expected 0 or more, got {}", settings.target_error));
   if (settings.max_bounces < 0)
     throw InputError(fmt::format("bounces: expected 0 or more, got {}", settings.max_bounces));
   if (settings.kept_terms < 0)
@@ -38,19 +48,22 @@ std::size_t coefficients(int bands) {
   return static_cast<std::size_t>(sh::coefficient_count(bands));
 }
 
-DirectionSampler make_sampler(const BakeSettings& settings) {
-  return {settings.method.sampling, settings.method.directions, settings.seed,
-          static_cast<std::size_t>(settings.samples / kSets)};
+/// One of the size asked for; with a target error others behind it, each of twice the size of the one before.
+std::vector<DirectionSampler> make_samplers(const BakeSettings& settings) {
+  std::vector<DirectionSampler> samplers;
+  for (std::int64_t size = settings.samples / settings.sets;; size *= 2) {
+    samplers.emplace_back(settings.method.sampling, settings.method.directions, settings.seed,
+                          static_cast<std::size_t>(size), static_cast<std::uint32_t>(settings.sets));
+    if (settings.target_error == 0.0 || 4 * size * settings.sets > kMostSamples) return samplers;
+  }
 }
 
 /// One of the parts that PointBaker gives.
 PointTransfer part_of(const SetStatistics& statistics, std::size_t part, std::size_t size) {
-  PointTransfer result{std::vector<double>(size), std::vector<double>(size)};
-  for (std::size_t i = 0; i < size; ++i) {
-    result.coefficients[i] = statistics.mean[part * size + i];
-    result.standard_errors[i] = statistics.standard_error(part * size + i);
-  }
-  return result;
+  const auto first = static_cast<std::ptrdiff_t>(part * size);
+  const auto end = static_cast<std::ptrdiff_t>((part + 1) * size);
+  return {{statistics.mean.begin() + first, statistics.mean.begin() + end},
+          {statistics.standard_errors.begin() + first, statistics.standard_errors.begin() + end}};
 }
 
 /// Puts a part into row `vertex` of two arrays.
@@ -58,7 +71,7 @@ void store(const SetStatistics& statistics, std::size_t part, std::size_t size, 
            std::vector<float>& values, std::vector<float>& errors) {
   for (std::size_t i = 0; i < size; ++i) {
     values[vertex * size + i] = static_cast<float>(statistics.mean[part * size + i]);
-    errors[vertex * size + i] = static_cast<float>(statistics.standard_error(part * size + i));
+    errors[vertex * size + i] = static_cast<float>(statistics.standard_errors[part * size + i]);
   }
 }
 
@@ -87,22 +100,42 @@ void bake_unshadowed(const std::vector<trace::SurfacePoint>& points, const BakeS
   });
 }
 
-void bake_points(const PointWork& work, const std::vector<trace::SurfacePoint>& points,
+void bake_points(const PointWork& work, const std::vector<trace::SurfacePoint>& points, const Plan& plan,
                  const BakeSettings& settings, Transfer& result) {
   const std::size_t size = coefficients(result.bands) * static_cast<std::size_t>(result.channels);
   result.coefficients.resize(result.vertices * size);
   result.standard_errors.resize(result.coefficients.size());
   result.terms.assign(static_cast<std::size_t>(work.kept_terms),
                       {result.coefficients, result.standard_errors});
+  std::vector<std::int64_t> samples(result.vertices);
+  std::atomic<std::size_t> above_target{0};
   for_vertices(result.vertices, settings, [&](std::size_t first, std::size_t end) {
     PointBaker baker(work);
     for (std::size_t v = first; v < end; ++v) {
-      const SetStatistics statistics = baker.run(points[v], v);
-      store(statistics, 0, size, v, result.coefficients, result.standard_errors);
+      const PointResult point =
+          baker.run(points[v], v, plan.above.empty() ? Above::something : plan.above[v]);
+      samples[v] = point.samples;
+      if (!point.is_on_target) above_target.fetch_add(1);
+      store(point.statistics, 0, size, v, result.coefficients, result.standard_errors);
       for (std::size_t k = 0; k < result.terms.size(); ++k)
-        store(statistics, k + 1, size, v, result.terms[k].coefficients, result.terms[k].standard_errors);
+        store(point.statistics, k + 1, size, v, result.terms[k].coefficients,
+              result.terms[k].standard_errors);
     }
   });
+  result.above_target = above_target;
+  result.samples = static_cast<std::int64_t>(work.samplers->front().set_size()) * work.sets;
+  double sum = 0.0;
+  for (const std::int64_t count : samples) {
+    result.samples = std::max(result.samples, count);
+    sum += static_cast<double>(count);
+  }
+  result.mean_samples = sum / static_cast<double>(std::max<std::size_t>(1, result.vertices));
+}
+
+/// Whether anything may be above any vertex.
+bool needs_rays(const Plan& plan) {
+  return plan.above.empty() ||
+         std::find(plan.above.begin(), plan.above.end(), Above::something) != plan.above.end();
 }
 
 /// Whether the three channels of all vectors are the same bits.
@@ -139,6 +172,12 @@ void merge_equal_channels(Transfer& transfer) {
   }
 }
 
+/// One set has no spread.
+void forget_errors(Transfer& transfer) {
+  transfer.standard_errors.clear();
+  for (Term& term : transfer.terms) term.standard_errors.clear();
+}
+
 }  // namespace
 
 // Funk-Hecke: the convolution of the zonal kernel max(0, cos) with y_lm is A_l y_lm, and the kernel at n is
@@ -160,13 +199,13 @@ PointTransfer shadowed_transfer(const trace::RayCaster& caster, const trace::Sur
   settings.seed = seed;
   require_valid(settings);
   const sh::BatchBasis<float> basis(bands);
-  const DirectionSampler sampler = make_sampler(settings);
+  const std::vector<DirectionSampler> samplers = make_samplers(settings);
   PointWork work;
   work.caster = &caster;
-  work.sampler = &sampler;
+  work.samplers = &samplers;
   work.basis = &basis;
   work.seed = seed;
-  return part_of(PointBaker(work).run(point, stream), 0, coefficients(bands));
+  return part_of(PointBaker(work).run(point, stream, Above::something).statistics, 0, coefficients(bands));
 }
 
 PointTerms interreflected_transfer(const scene::Scene& scene, const trace::RayCaster& caster,
@@ -177,20 +216,22 @@ PointTerms interreflected_transfer(const scene::Scene& scene, const trace::RayCa
   BakeSettings reflecting = settings;
   reflecting.kind = Kind::interreflected;
   const sh::BatchBasis<float> basis(settings.bands);
-  const DirectionSampler sampler = make_sampler(settings);
+  const std::vector<DirectionSampler> samplers = make_samplers(settings);
   const trace::SurfaceTable surfaces(scene);
   PointTerms result;
   result.channels = is_gray(scene) ? 1 : 3;
   const PointWork work{&caster,
                        &surfaces,
-                       &sampler,
+                       &samplers,
                        &basis,
                        settings.seed,
                        settings.method.directions,
                        result.channels,
                        settings.max_bounces,
-                       terms_to_keep(reflecting)};
-  const SetStatistics statistics = PointBaker(work).run(point, stream);
+                       terms_to_keep(reflecting),
+                       settings.sets,
+                       settings.target_error * unshadowed_norm(settings.bands)};
+  const SetStatistics statistics = PointBaker(work).run(point, stream, Above::something).statistics;
   const std::size_t size = coefficients(settings.bands) * static_cast<std::size_t>(result.channels);
   result.total = part_of(statistics, 0, size);
   for (int k = 0; k < work.kept_terms; ++k)
@@ -198,7 +239,22 @@ PointTerms interreflected_transfer(const scene::Scene& scene, const trace::RayCa
   return result;
 }
 
+double unshadowed_norm(int bands) {
+  double sum = 0.0;
+  for (int l = 0; l < bands; ++l) {
+    const double factor = sh::clamped_cosine_factor(l) / kPi;
+    sum += factor * factor * (2 * l + 1) / (4.0 * kPi);
+  }
+  return std::sqrt(sum);
+}
+
 Transfer bake(const scene::Scene& scene, const BakeSettings& settings) {
+  require_valid(settings);
+  scene::refuse_primitives(scene, "transfer");
+  return bake(scene, settings, make_plan(scene, trace::vertex_points(scene), settings));
+}
+
+Transfer bake(const scene::Scene& scene, const BakeSettings& settings, const Plan& plan) {
   require_valid(settings);
   scene::refuse_primitives(scene, "transfer");
   const bool is_interreflected = settings.kind == Kind::interreflected;
@@ -213,31 +269,30 @@ Transfer bake(const scene::Scene& scene, const BakeSettings& settings) {
     bake_unshadowed(points, settings, result);
     return result;
   }
-  const DirectionSampler sampler = make_sampler(settings);
+  const std::vector<DirectionSampler> samplers = make_samplers(settings);
   const sh::BatchBasis<float> basis(settings.bands);
-  const trace::RayCaster caster(scene);
-  const trace::SurfaceTable surfaces(scene);
-  result.samples = static_cast<std::int64_t>(sampler.set_size()) * kSets;
+  std::optional<trace::RayCaster> caster;
+  if (needs_rays(plan)) caster.emplace(scene);
+  std::optional<trace::SurfaceTable> surfaces;
+  if (plan.is_reflecting) surfaces.emplace(scene);
+  result.target_error = settings.target_error;
   result.bounces = is_interreflected ? settings.max_bounces : 0;
-  result.channels = is_interreflected && !is_gray(scene) ? 3 : 1;
+  result.channels = plan.channels;
   const int kept = terms_to_keep(settings);
-  if (is_interreflected && settings.method.solver == Solver::iterative) {
-    solve_iteratively({&scene, &caster, &surfaces, &sampler, &basis, &points, settings.max_bounces, kept,
-                       settings.threads, settings.progress},
-                      result);
+  const double allowed_error = settings.target_error * unshadowed_norm(settings.bands);
+  if (plan.is_reflecting && settings.method.solver == Solver::iterative) {
+    solve_iteratively(
+        {&scene, &*caster, &*surfaces, &samplers.front(), &basis, &points, &plan.above, settings.max_bounces,
+         kept, settings.sets, allowed_error, settings.threads, settings.progress},
+        result);
   } else {
-    const PointWork work{&caster,
-                         is_interreflected ? &surfaces : nullptr,
-                         &sampler,
-                         &basis,
-                         settings.seed,
-                         settings.method.directions,
-                         result.channels,
-                         result.bounces,
-                         kept};
-    bake_points(work, points, settings, result);
+    bake_points({caster ? &*caster : nullptr, surfaces ? &*surfaces : nullptr, &samplers, &basis,
+                 settings.seed, settings.method.directions, result.channels,
+                 plan.is_reflecting ? result.bounces : 0, kept, settings.sets, allowed_error},
+                points, plan, settings, result);
   }
   merge_equal_channels(result);
+  if (settings.sets == 1) forget_errors(result);
   return result;
 }
 

@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <functional>
 
+#include "prt/transfer/plan.hpp"
+#include "prt/transfer/set_statistics.hpp"
 #include "prt/transfer/transfer.hpp"
 #include "reference/scene/scene.hpp"
 #include "reference/trace/ray_caster.hpp"
@@ -24,6 +26,16 @@ struct BakeSettings {
   int threads = 0;  // 0 = all there are; never changes the result
   std::function<void(double fraction)> progress;
   Method method;
+  /// Relative; 0: none. Every vertex draws directions, `samples` first and then twice as many again and again, until the root of
+  /// its vector's summed squared standard errors is at most this times the norm of an unshadowed vector, which is the same
+  /// for all normals; at most kMostSamples. One half of the 16 sets decides when to stop, the other half gives the standard
+  /// errors, so that those say nothing about luck; the mean is that of all. They have 7 degrees of freedom then, else 15.
+  /// Solver::iterative adds sets instead, until the root mean square over all vertices is there; what decides and what is
+  /// stated are one there, which a mean over many vertices makes harmless.
+  double target_error = 0.0;
+  /// Independent sets that the directions are split into, 1 to kMostSets; 1 gives no standard errors. Fewer are better spread.
+  int sets = kSets;
+  bool is_skipping = true;  // what the plan finds unnecessary (plan.hpp)
   // Of interreflected transfer:
   int max_bounces = kAllBounces;
   int kept_terms = 0;  // bounces 0 … kept_terms-1 are kept apart, as far as there are any
@@ -38,7 +50,7 @@ struct BakeSettings {
 /// normal is on. Albedos of textures and vertex colours are those at q.
 ///
 /// Unshadowed (V = 1) has the closed form T_lm = A_l y_lm(n) / pi [3]. Otherwise directions come in 16 independent sets, whose
-/// spread gives the standard errors; with Method::iterative these 16 are solved one by one, so that the errors of what is
+/// spread gives the standard errors; with Solver::iterative these 16 are solved one by one, so that the errors of what is
 /// gathered are in them too. What they do not hold there: interpolation, and a bias at returns to the same vertex
 /// (bounces 2 and more), of the order of one over the directions in a set, times how much of such light there is.
 ///
@@ -49,8 +61,16 @@ struct BakeSettings {
 /// @throws InputError for bands, samples or bounces out of range, a scene with exact spheres or discs (transfer lives at
 /// vertices), or when light is still bouncing after kMostIterations of the iterative solver.
 [[nodiscard]] Transfer bake(const scene::Scene& scene, const BakeSettings& settings);
+/// The same, by a plan made before with the same arguments.
+[[nodiscard]] Transfer bake(const scene::Scene& scene, const BakeSettings& settings, const Plan& plan);
 
-/// Bounces that Method::iterative computes at most where none is named.
+inline constexpr int kMostSets = 64;
+/// Directions a vertex at most where an error is asked for.
+inline constexpr std::int64_t kMostSamples = std::int64_t{1} << 22;
+/// Norm of an unshadowed vector: sum over l of (A_l/pi)^2 (2l+1)/(4 pi), its root.
+[[nodiscard]] double unshadowed_norm(int bands);
+
+/// Bounces that Solver::iterative computes at most where none is named.
 inline constexpr int kMostIterations = 1000;
 
 /// Coefficients of one point, in double, for checks: values and their standard errors, [channel][bands^2].

@@ -34,6 +34,7 @@ void describe_method(const Transfer& transfer, nlohmann::json& json) {
   json["directions"] = std::string(to_string(transfer.method.directions));
   if (transfer.kind == Kind::interreflected) json["solver"] = std::string(to_string(transfer.method.solver));
   if (transfer.target_error > 0.0) json["targetError"] = transfer.target_error;
+  if (transfer.above_target > 0) json["aboveTarget"] = transfer.above_target;
   if (transfer.remainder > 0.0) json["remainder"] = transfer.remainder;
 }
 
@@ -131,6 +132,7 @@ void parse_method(const nlohmann::json& json, const std::string& file, Transfer&
       choice_of(direction_sets_from_string,
                 field_or(json, "directions", std::string(to_string(usual.directions)), file), file);
   transfer.target_error = field_or(json, "targetError", 0.0, file);
+  transfer.above_target = field_or(json, "aboveTarget", std::size_t{0}, file);
   transfer.remainder = field_or(json, "remainder", 0.0, file);
 }
 

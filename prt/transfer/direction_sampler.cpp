@@ -9,8 +9,11 @@
 namespace plumbline::transfer {
 namespace {
 
-/// Keeps the directions that leave the surface, in their order. Lattice and grids have all weights the same, or in place.
-void keep_leaving(const trace::SurfacePoint& point, std::size_t count, Bundle& bundle) {
+// 48 MiB.
+constexpr std::size_t kMostKept = std::size_t{1} << 22U;
+
+/// Keeps the directions on one side of the geometric plane, in their order.
+void keep_side(const trace::SurfacePoint& point, bool is_leaving, std::size_t count, Bundle& bundle) {
   const Vec3 g = point.geometric_normal;
   std::size_t kept = 0;
   for (std::size_t k = 0; k < count; ++k) {
@@ -20,7 +23,7 @@ void keep_leaving(const trace::SurfacePoint& point, std::size_t count, Bundle& b
     bundle.x[kept] = x;
     bundle.y[kept] = y;
     bundle.z[kept] = z;
-    kept += x * g.x + y * g.y + z * g.z > 0.0F ? 1 : 0;
+    kept += (x * g.x + y * g.y + z * g.z > 0.0F) == is_leaving ? 1 : 0;
   }
   bundle.count = kept;
 }
@@ -32,11 +35,12 @@ void set_weights(Bundle& bundle, float weight) {
 }  // namespace
 
 DirectionSampler::DirectionSampler(Sampling sampling, DirectionSets sets, std::uint64_t seed,
-                                   std::size_t set_size)
+                                   std::size_t set_size, std::uint32_t kept_sets)
     : sampling_(sampling), sets_(sets), seed_(seed), set_size_(set_size) {
   if (sampling != Sampling::qmc) {
     columns_ = static_cast<std::size_t>(std::sqrt(static_cast<double>(set_size)));
     set_size_ = set_size / columns_ * columns_;
+    if (sampling == Sampling::uniform && sets == DirectionSets::shared) keep_sphere(kept_sets);
     return;
   }
   const std::size_t points = std::min(set_size, kMostTogether) + sh::kBlockDirections - 1;
@@ -45,31 +49,33 @@ DirectionSampler::DirectionSampler(Sampling sampling, DirectionSets sets, std::u
   sine_.resize(table);
   height_.resize(table);
   for (std::size_t i = 0; i < table; ++i) {
-    const glm::dvec2 u = shifted_lattice_point(i, glm::dvec2(0.0));
-    cosine_[i] = static_cast<float>(std::cos(2.0 * kPi * u.x));
-    sine_[i] = static_cast<float>(std::sin(2.0 * kPi * u.x));
-    height_[i] = std::min(static_cast<float>(u.y), kBelowOne);
+    const double azimuth = 2.0 * kPi * kGoldenTurn * static_cast<double>(i);
+    cosine_[i] = static_cast<float>(std::cos(azimuth));
+    sine_[i] = static_cast<float>(std::sin(azimuth));
+    height_[i] = static_cast<float>(static_cast<double>(i) / static_cast<double>(set_size));
   }
 }
 
-void DirectionSampler::draw(const trace::SurfacePoint& point, const Place& place, Bundle& bundle) const {
+void DirectionSampler::draw(const trace::SurfacePoint& point, const Place& place, Bundle& bundle,
+                            Side side) const {
   Place mine = place;
   if (sets_ == DirectionSets::shared) mine.stream = 0;
+  mine.randomisation += mine.round * kSetsARound;
   switch (sampling_) {
     case Sampling::qmc:
-      return draw_lattice(point, mine, bundle);
+      return draw_lattice(point, mine, side, bundle);
     case Sampling::cosine:
-      return draw_cosine_grid(point, mine, bundle);
+      return draw_cosine_grid(point, mine, side, bundle);
     case Sampling::uniform:
-      return draw_uniform_grid(point, mine, bundle);
+      return draw_uniform_grid(point, mine, side, bundle);
   }
 }
 
-// Point first + k of a shifted lattice is point k of the same lattice, shifted by point `first` more.
-void DirectionSampler::draw_lattice(const trace::SurfacePoint& point, const Place& place,
+// Azimuths and steps from point `first` on are those from 0 on, turned and moved.
+void DirectionSampler::draw_lattice(const trace::SurfacePoint& point, const Place& place, Side side,
                                     Bundle& bundle) const {
-  const glm::dvec2 start =
-      shifted_lattice_point(place.first, random_shift(seed_, place.stream, place.randomisation));
+  const glm::dvec2 shift = random_shift(seed_, place.stream, place.randomisation);
+  const double azimuth = 2.0 * kPi * (shift.x + static_cast<double>(place.first) * kGoldenTurn);
   const auto [tangent, bitangent] = tangents(Vec3d(point.shading_normal));
   LatticeFrame frame{};
   for (int i = 0; i < 3; ++i) {
@@ -77,18 +83,36 @@ void DirectionSampler::draw_lattice(const trace::SurfacePoint& point, const Plac
     frame.bitangent[i] = static_cast<float>(bitangent[i]);
     frame.normal[i] = point.shading_normal[i];
   }
-  frame.start_cosine = static_cast<float>(std::cos(2.0 * kPi * start.x));
-  frame.start_sine = static_cast<float>(std::sin(2.0 * kPi * start.x));
-  frame.start_height = std::min(static_cast<float>(start.y), kBelowOne);
+  frame.start_cosine = static_cast<float>(std::cos(azimuth));
+  frame.start_sine = static_cast<float>(std::sin(azimuth));
+  frame.start_height =
+      static_cast<float>((static_cast<double>(place.first) + shift.y) / static_cast<double>(set_size_));
   const std::size_t whole =
       (place.count + sh::kBlockDirections - 1) / sh::kBlockDirections * sh::kBlockDirections;
   lattice_directions(frame, cosine_.data(), sine_.data(), height_.data(), whole, bundle.x.data(),
                      bundle.y.data(), bundle.z.data());
-  keep_leaving(point, place.count, bundle);
+  keep_side(point, side == Side::leaving, place.count, bundle);
   set_weights(bundle, 1.0F);
 }
 
-void DirectionSampler::draw_cosine_grid(const trace::SurfacePoint& point, const Place& place,
+/// One direction of a grid on the sphere.
+Vec3 DirectionSampler::on_sphere(std::size_t cell, std::uint64_t stream, std::uint32_t randomisation) const {
+  const glm::dvec2 jitter = random_shift(cell_seed(seed_, cell), stream, randomisation);
+  const glm::dvec2 u(
+      (static_cast<double>(cell % columns_) + jitter.x) / static_cast<double>(columns_),
+      (static_cast<double>(cell / columns_) + jitter.y) / static_cast<double>(set_size_ / columns_));
+  return Vec3(sphere_direction(u));
+}
+
+/// Where all vertices share the sets, they are drawn once.
+void DirectionSampler::keep_sphere(std::uint32_t sets) {
+  if (sets * set_size_ > kMostKept) return;
+  for (std::uint32_t set = 0; set < sets; ++set) {
+    for (std::size_t cell = 0; cell < set_size_; ++cell) sphere_.push_back(on_sphere(cell, 0, set));
+  }
+}
+
+void DirectionSampler::draw_cosine_grid(const trace::SurfacePoint& point, const Place& place, Side side,
                                         Bundle& bundle) const {
   const Vec3d normal(point.shading_normal);
   const std::size_t rows = set_size_ / columns_;
@@ -102,23 +126,22 @@ void DirectionSampler::draw_cosine_grid(const trace::SurfacePoint& point, const 
     bundle.y[k] = direction.y;
     bundle.z[k] = direction.z;
   }
-  keep_leaving(point, place.count, bundle);
+  keep_side(point, side == Side::leaving, place.count, bundle);
   set_weights(bundle, 1.0F);
 }
 
 // (1/pi) integral = (1/pi) (4 pi / N) sum: the weight is 4 max(0, n.w).
-void DirectionSampler::draw_uniform_grid(const trace::SurfacePoint& point, const Place& place,
+void DirectionSampler::draw_uniform_grid(const trace::SurfacePoint& point, const Place& place, Side side,
                                          Bundle& bundle) const {
-  const std::size_t rows = set_size_ / columns_;
   std::size_t kept = 0;
+  const std::size_t start = place.randomisation * set_size_ + place.first;
+  const bool is_kept = start + place.count <= sphere_.size();
   for (std::size_t k = 0; k < place.count; ++k) {
-    const std::size_t cell = place.first + k;
-    const glm::dvec2 jitter = random_shift(cell_seed(seed_, cell), place.stream, place.randomisation);
-    const glm::dvec2 u((static_cast<double>(cell % columns_) + jitter.x) / static_cast<double>(columns_),
-                       (static_cast<double>(cell / columns_) + jitter.y) / static_cast<double>(rows));
-    const Vec3 direction(sphere_direction(u));
+    const Vec3 direction =
+        is_kept ? sphere_[start + k] : on_sphere(place.first + k, place.stream, place.randomisation);
     const float cosine = glm::dot(direction, point.shading_normal);
-    if (!(cosine > 0.0F) || !(glm::dot(direction, point.geometric_normal) > 0.0F)) continue;
+    const bool is_leaving = glm::dot(direction, point.geometric_normal) > 0.0F;
+    if (!(cosine > 0.0F) || is_leaving != (side == Side::leaving)) continue;
     bundle.x[kept] = direction.x;
     bundle.y[kept] = direction.y;
     bundle.z[kept] = direction.z;

@@ -20,13 +20,10 @@ double to_unit(std::uint64_t bits) {
 
 }  // namespace
 
-glm::dvec2 shifted_lattice_point(std::uint64_t i, const glm::dvec2& shift) {
-  // 1 / p and 1 / p^2 for the real root p of p^3 = p + 1.
-  constexpr double kA = 0.7548776662466927;
-  constexpr double kB = 0.5698402909980532;
-  const double n = static_cast<double>(i);
-  const glm::dvec2 point(shift.x + n * kA, shift.y + n * kB);
-  return point - glm::floor(point);
+glm::dvec2 lattice_point(std::uint64_t i, std::uint64_t n, const glm::dvec2& shift) {
+  const double x = shift.x + static_cast<double>(i) * kGoldenTurn;
+  const double y = (static_cast<double>(i) + shift.y) / static_cast<double>(n);
+  return {x - std::floor(x), 1.0 - std::abs(2.0 * y - 1.0)};
 }
 
 std::uint64_t cell_seed(std::uint64_t seed, std::uint64_t cell) {

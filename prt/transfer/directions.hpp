@@ -10,10 +10,11 @@
 
 namespace plumbline::transfer {
 
-/// Point i of the rank-1 sequence with the generators of the plastic number (Roberts' R2: the two-dimensional
-/// golden ratio), shifted by `shift` modulo 1 (Cranley & Patterson 1976): for a uniform shift every point is
-/// uniform on [0, 1)^2.
-[[nodiscard]] glm::dvec2 shifted_lattice_point(std::uint64_t i, const glm::dvec2& shift);
+/// Point i of a Fibonacci lattice of n points (azimuth by the golden ratio, u.y in even steps), shifted by `shift` and folded in
+/// u.y: u.y = 1 - |2 (i + shift.y)/n - 1|. For a uniform shift the n points are together an unbiased rule on [0, 1)^2. The
+/// fold puts two grids of opposite offset on each other, whose first-order errors cancel: what is smooth over the hemisphere
+/// is integrated to second order (Hickernell's tent, 2002).
+[[nodiscard]] glm::dvec2 lattice_point(std::uint64_t i, std::uint64_t n, const glm::dvec2& shift);
 
 /// A uniform shift from (seed, stream, randomisation).
 [[nodiscard]] glm::dvec2 random_shift(std::uint64_t seed, std::uint64_t stream, std::uint32_t randomisation);
@@ -31,6 +32,9 @@ class RandomNumbers {
  private:
   std::uint64_t state_;
 };
+
+/// 1/golden ratio: azimuths of neighbours in the lattice, in turns.
+inline constexpr double kGoldenTurn = 0.6180339887498949;
 
 /// The largest float below 1.
 inline constexpr float kBelowOne = 1.0F - std::numeric_limits<float>::epsilon() / 2.0F;

@@ -33,8 +33,8 @@ void make_directions(const LatticeFrame& frame, const float* cosine, const float
   const auto h0 = hn::Set(d, frame.start_height);
   float* const out[3] = {x, y, z};
   for (std::size_t k = 0; k < count; k += kLanes) {
-    auto u = hn::Add(h0, hn::Load(d, height + k));
-    u = hn::IfThenElse(hn::Ge(u, one), hn::Sub(u, one), u);
+    const auto place = hn::Min(one, hn::Add(h0, hn::Load(d, height + k)));  // beyond n: padding
+    const auto u = hn::Sub(one, hn::Abs(hn::Sub(hn::Add(place, place), one)));
     const auto radius = hn::Sqrt(u);
     const auto up = hn::Sqrt(hn::Sub(one, u));
     const auto c = hn::Load(d, cosine + k);

@@ -18,10 +18,10 @@ struct LatticeFrame {
   float normal[3];
   float start_cosine;  // cos and sin of the first point's azimuth
   float start_sine;
-  float start_height;  // u.y of the first point, in [0, 1)
+  float start_height;  // (i + shift.y)/n of the first point
 };
 /// Cosine-distributed unit directions of lattice points: azimuths are the table's turned by the start, u.y are the table's
-/// plus the start's, modulo 1. `count` is a multiple of sh::kBlockDirections.
+/// steps plus the start's, folded. `count` is a multiple of sh::kBlockDirections.
 void lattice_directions(const LatticeFrame& frame, const float* cosine, const float* sine,
                         const float* height, std::size_t count, float* x, float* y, float* z);
 

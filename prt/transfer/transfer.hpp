@@ -37,11 +37,14 @@ struct Transfer {
   std::vector<float> coefficients;     // [vertex][channel][bands^2]
   std::vector<float> standard_errors;  // the same shape, or empty: exact
   std::vector<Term> terms;             // k = 0 … : bounce k apart, as many as were asked for; often none
-  std::int64_t samples = 0;            // directions a vertex, the most of all vertices; 0: closed form
+  std::int64_t samples =
+      0;  // directions a vertex; the most that one drew, where an error was asked for; 0: closed form
   std::uint64_t seed = 0;
   Method method;
-  double target_error = 0.0;  // that was asked for (bake.hpp); 0: none
-  double remainder = 0.0;     // no coefficient misses more than this for bounces left out of kAllBounces
+  double target_error = 0.0;     // that was asked for (bake.hpp); 0: none
+  std::size_t above_target = 0;  // vertices that did not reach it
+  double mean_samples = 0.0;     // directions a vertex, the mean of all; not kept in files
+  double remainder = 0.0;        // no coefficient misses more than this for bounces left out of kAllBounces
 
   /// The bands^2 coefficients of a vertex; a gray transfer gives the same vector for every channel.
   [[nodiscard]] std::span<const float> vector(std::size_t vertex, int channel) const;

@@ -164,6 +164,13 @@ void RayCaster::occluded_from(const Vec3& origin, const DirectionArrays& directi
   }
 }
 
+void RayCaster::closest_from(const Vec3& origin, const DirectionArrays& directions, Hit* hits) const {
+  for (std::size_t k = 0; k < directions.count; ++k) {
+    hits[k] =
+        closest_hit({origin, {directions.x[k], directions.y[k], directions.z[k]}}).value_or(Hit{kNoSurface});
+  }
+}
+
 #else
 
 void RayCaster::occluded_from(const Vec3& origin, const DirectionArrays& directions,
@@ -186,15 +193,34 @@ void RayCaster::occluded_from(const Vec3& origin, const DirectionArrays& directi
   }
 }
 
-#endif
-
-// Closest hits that spread over a hemisphere gain nothing from packets or streams (plumbline_bench, rays/first_bounce).
 void RayCaster::closest_from(const Vec3& origin, const DirectionArrays& directions, Hit* hits) const {
-  for (std::size_t k = 0; k < directions.count; ++k) {
-    hits[k] =
-        closest_hit({origin, {directions.x[k], directions.y[k], directions.z[k]}}).value_or(Hit{kNoSurface});
+  constexpr std::size_t kStream = 256;
+  RTCRayHit queries[kStream];
+  RTCRayHit blank;
+  blank.ray = make_ray({origin, Vec3(0.0F)});
+  blank.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  blank.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  for (std::size_t first = 0; first < directions.count; first += kStream) {
+    const std::size_t count = std::min(kStream, directions.count - first);
+    for (std::size_t k = 0; k < count; ++k) {
+      queries[k] = blank;
+      queries[k].ray.dir_x = directions.x[first + k];
+      queries[k].ray.dir_y = directions.y[first + k];
+      queries[k].ray.dir_z = directions.z[first + k];
+    }
+    rtcIntersect1M(impl_->scene, &context, queries, static_cast<unsigned>(count), sizeof(RTCRayHit));
+    for (std::size_t k = 0; k < count; ++k) {
+      const RTCRayHit& query = queries[k];
+      const bool is_hit = query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+      hits[first + k] = {is_hit ? query.hit.primID : kNoSurface, Vec2(query.hit.u, query.hit.v),
+                         query.ray.tfar};
+    }
   }
 }
+
+#endif
 
 bool RayCaster::is_occluded(const Ray& ray) const {
   RTCRay query = make_ray(ray);

@@ -81,17 +81,26 @@ nlohmann::json description(const transfer::Baked& baked) {
   const std::size_t bytes =
       transfer.vertices == 0 ? 0 : transfer.coefficients.size() * sizeof(float) / transfer.vertices;
   const bool is_endless = transfer.bounces == transfer::kAllBounces;
-  return {{"bands", transfer.bands},
-          {"transfer", std::string(to_string(transfer.kind))},
-          {"bounces", is_endless ? nlohmann::json("all") : nlohmann::json(transfer.bounces)},
-          {"terms", transfer.terms.size()},
-          {"vertices", transfer.vertices},
-          {"triangles", baked.scene.triangles.size()},
-          {"channels", transfer.channels},
-          {"bytes_per_vertex", bytes},
-          {"compression", "none"},
-          {"samples", transfer.samples},
-          {"seed", transfer.seed}};
+  nlohmann::json json = {{"bands", transfer.bands},
+                         {"transfer", std::string(to_string(transfer.kind))},
+                         {"bounces", is_endless ? nlohmann::json("all") : nlohmann::json(transfer.bounces)},
+                         {"terms", transfer.terms.size()},
+                         {"vertices", transfer.vertices},
+                         {"triangles", baked.scene.triangles.size()},
+                         {"channels", transfer.channels},
+                         {"bytes_per_vertex", bytes},
+                         {"compression", "none"},
+                         {"samples", transfer.samples},
+                         {"seed", transfer.seed}};
+  if (transfer.kind == transfer::Kind::unshadowed) return json;
+  json["sampling"] = std::string(to_string(transfer.method.sampling));
+  json["directions"] = std::string(to_string(transfer.method.directions));
+  if (transfer.target_error > 0.0) json["target_error"] = transfer.target_error;
+  if (transfer.kind == transfer::Kind::interreflected) {
+    json["solver"] = std::string(to_string(transfer.method.solver));
+    json["remainder"] = transfer.remainder;
+  }
+  return json;
 }
 
 std::string text_of(const std::string& name, const nlohmann::json& json) {

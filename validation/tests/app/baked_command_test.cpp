@@ -43,6 +43,57 @@ TEST_F(BakedCommand, BakeWarnsOfTheScenesOwnLights) {
   EXPECT_NE(outcome.err.find("warning: the scene's own lights"), std::string::npos) << outcome.err;
 }
 
+TEST_F(BakedCommand, KeepsBouncesApart) {
+  (void)succeed({"bake", "builtin:corner", "--bands", "2", "--samples", "64", "--transfer", "interreflected",
+                 "--bounces", "2", "--keep-terms", "3", "--solver", "iterative", "-o", "b.prt.glb"});
+  const auto json =
+      nlohmann::json::parse(succeed({"inspect", "b.prt.glb", "--vertices", "1", "--json", "-"}));
+  EXPECT_EQ(json["bounces"], 2);
+  EXPECT_EQ(json["terms"], 3);
+  EXPECT_EQ(json["solver"], "iterative");
+  const auto& terms = json["term_vectors"]["1"];
+  ASSERT_EQ(terms.size(), 3U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    double sum = 0.0;
+    for (const auto& term : terms) sum += term[0][i].get<double>();
+    EXPECT_LE(std::abs(sum - json["transfer_vectors"]["1"][0][i].get<double>()), 1e-6);
+  }
+  const auto endless =
+      nlohmann::json::parse(succeed({"bake", "builtin:corner", "--bands", "1", "--samples", "64",
+                                     "--transfer", "interreflected", "-o", "c.prt.glb", "--json", "-"}));
+  EXPECT_EQ(endless["bounces"], "all");
+  EXPECT_EQ(endless["solver"], "traced");
+}
+
+TEST_F(BakedCommand, BakeExplainsWhatItSkips) {
+  const std::string text = bake({"--explain"});
+  EXPECT_NE(text.find("60 of 60 vertices"), std::string::npos) << text;
+  EXPECT_EQ(nlohmann::json::parse(bake({"--json", "-", "--explain"}))["plan"].size(), 1U);
+  EXPECT_EQ(nlohmann::json::parse(bake({"--json", "-", "--no-skip"}))["plan"].size(), 0U);
+}
+
+TEST_F(BakedCommand, BakeRefusesInOneLine) {
+  const std::vector<std::pair<Arguments, std::string>> cases = {
+      {{"--bounces", "2"}, "--transfer interreflected"},
+      {{"--transfer", "interreflected", "--bounces", "-1"}, "--bounces"},
+      {{"--transfer", "interreflected", "--bounces", "some"}, "--bounces"},
+      {{"--sampling", "sobol"}, "--sampling"},
+      {{"--solver", "radiosity"}, "--solver"},
+      {{"--directions", "mine"}, "--directions"},
+      {{"--target-error", "0"}, "--target-error"},
+      {{"--keep-terms", "-1"}, "--keep-terms"},
+      {{"--samples", "8"}, "samples"}};
+  for (const auto& [further, word] : cases) {
+    Arguments arguments = {"bake", "builtin:convex", "--bands", "3", "-o", "d.prt.glb"};
+    arguments.insert(arguments.end(), further.begin(), further.end());
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 2) << word;
+    EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  }
+  EXPECT_TRUE(contents().empty());
+}
+
 TEST_F(BakedCommand, InspectGivesTransferVectors) {
   (void)bake({"--transfer", "unshadowed"});
   const auto json =

@@ -23,11 +23,11 @@ BakeSettings settings_of(Kind kind, int bands = 5, int samples = 4096) {
   return settings;
 }
 
-/// Largest |T - truth| in standard errors; coefficients whose error is 0 must agree to float rounding.
+/// Largest |T - truth| in standard errors beyond the rounding of a float basis, 7e-7 (sh/batch.hpp) along rounded directions.
 double worst_z(const PointTransfer& point, const std::vector<double>& truth) {
   double worst = 0.0;
   for (std::size_t i = 0; i < truth.size(); ++i) {
-    const double difference = std::abs(point.coefficients[i] - truth[i]);
+    const double difference = std::max(0.0, std::abs(point.coefficients[i] - truth[i]) - 1e-6);
     worst = std::max(worst, difference / std::max(point.standard_errors[i], 1e-7));
   }
   return worst;
@@ -143,7 +143,7 @@ TEST(Directions, HaveTheCosineDensity) {
   double sum = 0.0;
   constexpr int kCount = 4096;
   for (std::uint64_t i = 0; i < kCount; ++i) {
-    const Vec3d w = cosine_direction(normal, shifted_lattice_point(i, random_shift(1, 2, 3)));
+    const Vec3d w = cosine_direction(normal, lattice_point(i, kCount, random_shift(1, 2, 3)));
     EXPECT_LE(std::abs(glm::length(w) - 1.0), 1e-14);
     sum += glm::dot(w, normal);
   }
