@@ -102,4 +102,18 @@ RelitScene textures() {
           sh::project_radiance(light::make_builtin_environment("two-lobes"), 3)};
 }
 
+std::vector<Rgb> rounded_sums(const RelitScene& scene) {
+  std::vector<Rgb> result(scene.baked.transfer.vertices, Rgb(0.0F));
+  for (std::size_t v = 0; v < result.size(); ++v) {
+    for (int c = 0; c < 3; ++c) {
+      const std::span<const float> vector = scene.baked.transfer.vector(v, c);
+      double sum = 0.0;
+      for (std::size_t i = 0; i < vector.size(); ++i)
+        sum += static_cast<double>(vector[i]) * scene.lighting.coefficients[i][c];
+      result[v][c] = static_cast<float>(sum);
+    }
+  }
+  return result;
+}
+
 }  // namespace plumbline::test

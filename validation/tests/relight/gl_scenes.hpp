@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "prt/sh/lighting.hpp"
 #include "prt/transfer/baked_file.hpp"
@@ -20,5 +21,8 @@ struct RelitScene {
 [[nodiscard]] RelitScene bunny_in_the_city();
 /// A textured floor behind coloured triangles, all ways to wrap among them, three channels of transfer, 3 bands.
 [[nodiscard]] RelitScene textures();
+
+/// Exit radiance for unit albedo at the vertices, summed in double and rounded once.
+[[nodiscard]] std::vector<Rgb> rounded_sums(const RelitScene& scene);
 
 }  // namespace plumbline::test
