@@ -11,6 +11,8 @@ const std::vector<Family>& families() {
       {"truths", "path tracer against closed forms of light transport", check_truths, true},
       {"images", "PRT images against path-traced ones", check_images},
       {"exponential", "products, exponentials and logarithms, accumulated blockers", check_exponential},
+      {"compression", "size against error of compressed transfer, and what one sees of it", check_compression,
+       true},
   };
   return all;
 }

@@ -32,6 +32,9 @@ void check_truths(const Suite& suite, report::Report& report);
 /// Images of shadowed PRT against direct-light path tracing, under the band-limited and under the full light.
 void check_images(const Suite& suite, report::Report& report);
 
+/// Size against error of the ways to compress transfer, and whether one sees it.
+void check_compression(const Suite& suite, report::Report& report);
+
 struct Family {
   std::string name;
   std::string description;
