@@ -11,6 +11,9 @@ using Matrix = Eigen::MatrixXd;
 using ConstRow = Eigen::Map<const Eigen::VectorXf>;
 using ConstRowD = Eigen::Map<const Eigen::VectorXd>;
 
+/// On the stack: one is made for each distance.
+using StackVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxDimension, 1>;
+
 constexpr std::size_t kBlock = 256;  // members that are centred at a time
 
 Eigen::Index index(std::size_t i) {
@@ -104,7 +107,8 @@ Affine fit_affine(const Vectors& vectors, std::span<const std::uint32_t> members
 // distance in the rounding of the two where it is small.
 double squared_distance(const Affine& affine, std::span<const float> x) {
   const ConstRowD mean(affine.mean.data(), index(affine.mean.size()));
-  Eigen::VectorXd rest = row(x).cast<double>() - mean;
+  if (affine.axes.empty()) return (row(x).cast<double>() - mean).squaredNorm();
+  StackVector rest = row(x).cast<double>() - mean;
   for (std::size_t k = 0; k < affine.components(); ++k) {
     const ConstRowD axis(affine.axis(k).data(), index(x.size()));
     rest -= axis.dot(rest) * axis;

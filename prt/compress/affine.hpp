@@ -28,7 +28,7 @@ struct Affine {
 [[nodiscard]] Affine fit_affine(const Vectors& vectors, std::span<const std::uint32_t> members,
                                 std::size_t components);
 
-/// Squared distance from x to the subspace, in double.
+/// Squared distance from x, of at most kMaxDimension numbers, to the subspace, in double.
 [[nodiscard]] double squared_distance(const Affine& affine, std::span<const float> x);
 
 /// Coordinates of x's projection: axis_k . (x - mean).

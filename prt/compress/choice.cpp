@@ -11,6 +11,7 @@
 namespace plumbline::compress {
 namespace {
 
+constexpr double kLeastGain = 1e-3;      // of an iteration where clusters are only weighed
 constexpr double kIterativeGain = 1.25;  // static error over iterative error, up to which it is worth a try …
 constexpr int kMostBold = 6;             // … so many times
 
@@ -99,6 +100,7 @@ std::optional<Choice> choose(const transfer::Transfer& transfer, const ChoiceSet
   ClusterSettings clusters = settings.clusters;
   clusters.components =
       settings.method == Method::vq ? 0 : std::min<int>(kMostComponents, static_cast<int>(vectors.dimension));
+  clusters.least_gain = std::max(clusters.least_gain, kLeastGain);
   Choice choice;
   std::map<int, Weighed> weighed;
   for (const int count : cluster_counts(settings.method, vectors.count())) {

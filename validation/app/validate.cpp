@@ -239,10 +239,14 @@ void register_validate(CLI::App& app, Action& chosen) {
   add_lookup_option(*verb, options->light);
   verb->add_option("--bands", options->bands, "band counts to judge (default: 3 5)")->delimiter(',');
   std::vector<std::string> names;
-  for (const checks::Family& family : checks::families()) names.push_back(family.name);
-  verb->add_option(
-          "--checks", options->families,
-          fmt::format("families to run: {} (default: all but truths and normal-maps)", fmt::join(names, ",")))
+  std::vector<std::string> named;
+  for (const checks::Family& family : checks::families()) {
+    names.push_back(family.name);
+    if (family.is_only_when_named) named.push_back(family.name);
+  }
+  verb->add_option("--checks", options->families,
+                   fmt::format("families to run: {} (default: all but {})", fmt::join(names, ","),
+                               fmt::join(named, ", ")))
       ->delimiter(',')
       ->check(CLI::IsMember(names));
   verb->add_option("--tier", options->tier,

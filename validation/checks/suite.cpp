@@ -13,6 +13,8 @@ const std::vector<Family>& families() {
       {"normal-maps", "normal-mapped PRT in seven forms against path tracing with the same map",
        check_normal_maps, true},
       {"exponential", "products, exponentials and logarithms, accumulated blockers", check_exponential},
+      {"compression", "size against error of compressed transfer, and what one sees of it", check_compression,
+       true},
   };
   return all;
 }

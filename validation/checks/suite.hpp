@@ -35,6 +35,9 @@ void check_images(const Suite& suite, report::Report& report);
 /// Normal-mapped PRT in seven forms against path tracing with the same map: the given scenes that have one, else builtin:normal-mapped.
 void check_normal_maps(const Suite& suite, report::Report& report);
 
+/// Size against error of the ways to compress transfer, and whether one sees it.
+void check_compression(const Suite& suite, report::Report& report);
+
 struct Family {
   std::string name;
   std::string description;

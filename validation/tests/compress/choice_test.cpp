@@ -27,7 +27,7 @@ ChoiceSettings settings_of(Method method, double target) {
 }
 
 TEST(CompressChoice, KeepsTheErrorAndGrowsAsItFalls) {
-  const transfer::Transfer transfer = as_transfer(bent_sheet(27, 2500, 1.5));
+  const transfer::Transfer transfer = as_transfer(bent_sheet(27, 1000, 1.5));
   for (const Method method : {Method::pca, Method::cpca}) {
     double last = 0.0;
     for (const double target : {0.2, 0.05, 0.01, 0.002}) {
@@ -41,7 +41,7 @@ TEST(CompressChoice, KeepsTheErrorAndGrowsAsItFalls) {
 }
 
 TEST(CompressChoice, NoSmallerCandidateIsExpectedToHold) {
-  const transfer::Transfer transfer = as_transfer(bent_sheet(27, 2500, 1.5));
+  const transfer::Transfer transfer = as_transfer(bent_sheet(27, 1000, 1.5));
   ChoiceSettings settings = settings_of(Method::cpca, 0.02);
   settings.is_iterative = false;
   const std::optional<Choice> choice = choose(transfer, settings);
@@ -62,7 +62,7 @@ TEST(CompressChoice, NoSmallerCandidateIsExpectedToHold) {
 }
 
 TEST(CompressChoice, ExpectsWhatIsMeasured) {
-  const transfer::Transfer transfer = as_transfer(bent_sheet(27, 2500, 1.5));
+  const transfer::Transfer transfer = as_transfer(bent_sheet(27, 1000, 1.5));
   const std::optional<Choice> choice = choose(transfer, settings_of(Method::pca, 0.02));
   ASSERT_TRUE(choice.has_value());
   for (const Candidate& candidate : choice->candidates) {
@@ -78,7 +78,7 @@ TEST(CompressChoice, ExpectsWhatIsMeasured) {
 }
 
 TEST(CompressChoice, SaysSoWhenNothingGetsThere) {
-  const transfer::Transfer transfer = as_transfer(bent_sheet(27, 2500));
+  const transfer::Transfer transfer = as_transfer(bent_sheet(27, 1000));
   EXPECT_FALSE(choose(transfer, settings_of(Method::vq, 1e-3)).has_value());
   EXPECT_THROW((void)choose(transfer, settings_of(Method::vq, 0.0)), InputError);
   EXPECT_THROW((void)choose(transfer, settings_of(Method::vq, NAN)), InputError);
