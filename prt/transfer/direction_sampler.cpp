@@ -71,10 +71,29 @@ void DirectionSampler::draw(const trace::SurfacePoint& point, const Place& place
   }
 }
 
+// What the surface blocks is closer to the shading plane than the normals' angle d: 1 - u.y = |2 (i + shift.y)/n - 1| is at most
+// sin^2 d. Those are a few points in the middle of the lattice; one more at both ends makes up for rounding.
+DirectionSampler::Place DirectionSampler::blocked_part(const trace::SurfacePoint& point, const Place& place,
+                                                       double shift) const {
+  const auto cosine = static_cast<double>(glm::dot(point.shading_normal, point.geometric_normal));
+  const double share = cosine > 0.0 ? std::max(0.0, 1.0 - cosine * cosine) + 1e-6 : 1.0;
+  const auto n = static_cast<double>(set_size_);
+  const double low = std::floor(0.5 * n * (1.0 - share) - shift) - 1.0;
+  const double high = std::ceil(0.5 * n * (1.0 + share) - shift) + 2.0;
+  Place part = place;
+  part.first = std::max(place.first, static_cast<std::size_t>(std::max(0.0, low)));
+  const std::size_t end = std::min(place.first + place.count, static_cast<std::size_t>(std::max(0.0, high)));
+  part.count = end > part.first ? end - part.first : 0;
+  return part;
+}
+
 // Azimuths and steps from point `first` on are those from 0 on, turned and moved.
-void DirectionSampler::draw_lattice(const trace::SurfacePoint& point, const Place& place, Side side,
+void DirectionSampler::draw_lattice(const trace::SurfacePoint& point, const Place& all, Side side,
                                     Bundle& bundle) const {
-  const glm::dvec2 shift = random_shift(seed_, place.stream, place.randomisation);
+  const glm::dvec2 shift = random_shift(seed_, all.stream, all.randomisation);
+  const Place place = side == Side::blocked ? blocked_part(point, all, shift.y) : all;
+  bundle.count = 0;
+  if (place.count == 0) return;
   const double azimuth = 2.0 * kPi * (shift.x + static_cast<double>(place.first) * kGoldenTurn);
   const auto [tangent, bitangent] = tangents(Vec3d(point.shading_normal));
   LatticeFrame frame{};

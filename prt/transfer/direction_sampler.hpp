@@ -41,12 +41,13 @@ class DirectionSampler {
             Side side = Side::leaving) const;
 
  private:
-  void draw_lattice(const trace::SurfacePoint& point, const Place& place, Side side, Bundle& bundle) const;
+  void draw_lattice(const trace::SurfacePoint& point, const Place& all, Side side, Bundle& bundle) const;
   void draw_cosine_grid(const trace::SurfacePoint& point, const Place& place, Side side,
                         Bundle& bundle) const;
   void draw_uniform_grid(const trace::SurfacePoint& point, const Place& place, Side side,
                          Bundle& bundle) const;
 
+  [[nodiscard]] Place blocked_part(const trace::SurfacePoint& point, const Place& place, double shift) const;
   [[nodiscard]] Vec3 on_sphere(std::size_t cell, std::uint64_t stream, std::uint32_t randomisation) const;
   void keep_sphere(std::uint32_t sets);
 

@@ -1,6 +1,7 @@
 // Kinds of sampling, direction sets and target errors of a bake.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -85,6 +86,32 @@ TEST(DirectionSampler, RoundsAreDrawnAnew) {
     sampler.draw(point, {5, 2, 0, 64, 0}, first);
     sampler.draw(point, {5, 2, 0, 64, 1}, again);
     EXPECT_NE(first.x, again.x) << to_string(kind);
+  }
+}
+
+// What leaves the surface and what the surface blocks are all there is above the shading plane.
+TEST(DirectionSampler, SidesAddUp) {
+  for (const float tilt : {0.0F, 0.02F, 0.3F, 1.5F}) {
+    trace::SurfacePoint point = trace::free_point(Vec3(0.0F), Vec3(0, 0, 1));
+    point.geometric_normal = Vec3(std::sin(tilt), 0.0F, std::cos(tilt));
+    for (const Sampling kind : {Sampling::qmc, Sampling::cosine}) {
+      const DirectionSampler sampler(kind, DirectionSets::per_vertex, 7, 1024);
+      Bundle bundle(DirectionSampler::kMostTogether, 1);
+      std::size_t blocked = 0;
+      for (std::uint64_t stream = 0; stream < 20; ++stream) {
+        sampler.draw(point, {stream, 2, 0, 1024, 0}, bundle, DirectionSampler::Side::blocked);
+        for (std::size_t k = 0; k < bundle.count; ++k) {
+          EXPECT_LE(bundle.x[k] * point.geometric_normal.x + bundle.z[k] * point.geometric_normal.z, 1e-6F);
+        }
+        blocked += bundle.count;
+        const std::size_t below = bundle.count;
+        sampler.draw(point, {stream, 2, 0, 1024, 0}, bundle);
+        EXPECT_LE(std::max(below + bundle.count, std::size_t{1024}) -
+                      std::min(below + bundle.count, std::size_t{1024}),
+                  1U);  // one that lies in the plane may round either way
+      }
+      EXPECT_EQ(blocked > 0, tilt > 0.0F) << tilt;
+    }
   }
 }
 
