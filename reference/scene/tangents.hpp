@@ -11,8 +11,8 @@ namespace plumbline::scene {
 /// coordinate and handedness (whether the texture is mirrored). A vertex used with both handednesses is split: the copy is appended.
 /// (MikkTSpace also keeps apart corners that no chain of shared edges connects; here they are summed.)
 /// Triangles without area in the texture have no part. Where nothing remains the tangent is any unit vector of the plane.
-/// @param scene  positions, normals, finite texture coordinates of every vertex, triangles, materials; tangents of every vertex, (0, 0, 0, 0)
-///               where one is to be computed. Vertices that no normal-mapped triangle uses get any unit vector.
+/// @param scene  positions, normals, finite texture coordinates of every vertex, triangles, materials; tangents of every
+///               vertex, (0, 0, 0, 0) where one is to be computed. Vertices that no normal-mapped triangle uses get any unit vector.
 [[nodiscard]] Scene with_computed_tangents(Scene scene);
 
 }  // namespace plumbline::scene

@@ -1,9 +1,10 @@
-// Normal-mapped PRT against the path tracer with the same normal map, direct light, under the band-limited light that both see. Bumps neither
-// shadow nor light each other in either: the map only turns the normal. So the methods differ from the truth by (1) what quadratic incident
+// Normal-mapped PRT against the path tracer with the same normal map, direct light, under the band-limited light that both see. Bumps
+// neither shadow nor light each other in either: the map only turns the normal. So the methods differ from the truth by (1) what quadratic incident
 // radiance cannot hold, (2) interpolation between vertices and bake noise, and (3) the method's own shortcut.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "prt/normal_map/view.hpp"
@@ -192,6 +193,26 @@ void add_gallery(const View& view, report::Report& report) {
   report.galleries.push_back(std::move(gallery));
 }
 
+/// Two methods of which the first must be nearer to the truth.
+struct Pair {
+  std::size_t better, worse;
+  const char* source;
+};
+constexpr const char* kEnergies =
+    "Sloan 2005: 4, 6 and 9 terms keep 96.4, 99.3 and 100 % of the squared energy";
+constexpr const char* kCourse = "Sloan 2005: the ratio is \"a much more approximate solution\"";
+constexpr const char* kOptimal =
+    "Eckart & Young: no four functions of the normal hold more than singular vectors; here are three";
+constexpr const char* kFit =
+    "Least squares: no numbers for these three functions do better, over all normals";
+constexpr const char* kMap = "The map bends normals by up to 40 degrees";
+constexpr std::array<Pair, 6> kPairs = {{{kFrame, kSixTerms, kEnergies},
+                                         {kSixTerms, kFourTerms, kEnergies},
+                                         {kFourTerms, kFitted, kOptimal},
+                                         {kFourTerms, kRatio, kCourse},
+                                         {kFourTerms, kNoMap, kMap},
+                                         {kFitted, kHalfLife2, kFit}}};
+
 std::vector<Finding> judge(const View& view, double significance) {
   std::vector<Finding> findings;
   const RootMeanSquare error = root(mean_square_error(view.images[kWorld], view.truth, view.mask));
@@ -204,21 +225,7 @@ std::vector<Finding> judge(const View& view, double significance) {
                                   "RMSE of nine terms in world axes against path tracing, upper end of the "
                                   "interval. Interpolation and bake noise are in it."},
                                  error.high, std::sqrt(bound)));
-  struct Pair {
-    std::size_t better, worse;
-    const char* source;
-  };
-  constexpr const char* kEnergies =
-      "Sloan 2005: 4, 6 and 9 terms keep 96.4, 99.3 and 100 % of the squared energy";
-  constexpr const char* kCourse = "Sloan 2005: the ratio is \"a much more approximate solution\"";
-  constexpr const char* kOptimal =
-      "Eckart & Young: no four functions of the normal hold more than singular vectors; here are three";
-  constexpr const char* kFit =
-      "Least squares: no numbers for these three functions do better, over all normals";
-  constexpr const char* kMap = "The map bends normals by up to 40 degrees";
-  for (const Pair& pair : {Pair{kFrame, kSixTerms, kEnergies}, Pair{kSixTerms, kFourTerms, kEnergies},
-                           Pair{kFourTerms, kFitted, kOptimal}, Pair{kFourTerms, kRatio, kCourse},
-                           Pair{kFourTerms, kNoMap, kMap}, Pair{kFitted, kHalfLife2, kFit}}) {
+  for (const Pair& pair : kPairs) {
     const metrics::Estimate excess =
         excess_error(view.images[pair.better], view.images[pair.worse], view.truth, view.mask);
     findings.push_back(

@@ -11,8 +11,8 @@
 namespace plumbline::checks {
 
 /// At each vertex the most that exit radiance for unit albedo can be off, under any normal map and any shadow, when incident radiance is
-/// kept to degree 2. The kernel max(0, cos) less its degrees 0 to 2, 1/4 + cos/2 + 5 (3 cos^2 - 1)/32, is within 3/32 (at the horizon), and
-/// what arrives is the light where nothing blocks: |error| <= 3/(32 pi) times the integral of |light| over the hemisphere above the surface.
+/// kept to degree 2. The kernel max(0, cos) less its degrees 0 to 2, 1/4 + cos/2 + 5 (3 cos^2 - 1)/32, is within 3/32 (at the
+/// horizon), and what arrives is the light where nothing blocks: |error| <= 3/(32 pi) times the integral of |light| over the hemisphere above the surface.
 /// By 2048 quadrature nodes: the edge of the hemisphere costs about a percent.
 [[nodiscard]] std::vector<Rgb> nine_terms_bounds(const scene::Scene& scene, const sh::ShRgb& light);
 
