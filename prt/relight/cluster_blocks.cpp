@@ -15,24 +15,53 @@ namespace {
 
 constexpr std::size_t kBlocksAtATime = 256;  // one thread's share: 4096 vertices
 
-transfer::Transfer constants_of(const compress::Compressed& compressed, const transfer::Transfer& like) {
-  transfer::Transfer constants;
-  constants.bands = like.bands;
-  constants.channels = like.channels;
+std::size_t coefficients_of(const ClusterBlocks& blocks) {
+  return static_cast<std::size_t>(sh::coefficient_count(blocks.bands));
+}
+
+/// Vector number `at` among the constants.
+void put_constant(const float* vector, std::size_t at, ClusterBlocks& blocks) {
+  const std::size_t dimension = coefficients_of(blocks) * static_cast<std::size_t>(blocks.channels);
+  float* to =
+      blocks.constant_vectors.data() + at / kClusterLanes * kClusterLanes * dimension + at % kClusterLanes;
+  for (std::size_t i = 0; i < dimension; ++i) to[i * kClusterLanes] = vector[i];
+}
+
+std::size_t whole_blocks(std::size_t count) {
+  return (count + kClusterLanes - 1) / kClusterLanes;
+}
+
+void put_constants(const compress::Compressed& compressed, ClusterBlocks& blocks) {
   const std::size_t dimension = compressed.dimension;
-  const std::size_t axes = compressed.components() * dimension;
-  constants.vertices = static_cast<std::size_t>(compressed.clusters) * (compressed.components() + 1);
-  constants.coefficients.reserve(constants.vertices * dimension);
-  const auto append = [&](const std::vector<float>& from, std::size_t first, std::size_t count) {
-    const auto begin = from.begin() + static_cast<std::ptrdiff_t>(first);
-    constants.coefficients.insert(constants.coefficients.end(), begin,
-                                  begin + static_cast<std::ptrdiff_t>(count));
-  };
+  const std::size_t components = compressed.components();
+  blocks.constants = static_cast<std::size_t>(compressed.clusters) * (components + 1);
+  blocks.constant_vectors.assign(whole_blocks(blocks.constants) * kClusterLanes * dimension, 0.0F);
   for (std::size_t c = 0; c < static_cast<std::size_t>(compressed.clusters); ++c) {
-    append(compressed.means, c * dimension, dimension);
-    append(compressed.axes, c * axes, axes);
+    put_constant(compressed.means.data() + c * dimension, c * (components + 1), blocks);
+    for (std::size_t k = 0; k < components; ++k) {
+      put_constant(compressed.axes.data() + (c * components + k) * dimension, c * (components + 1) + k + 1,
+                   blocks);
+    }
   }
-  return constants;
+}
+
+/// Exit radiance of the constants, [constant][r, g, b].
+std::vector<float> lit_constants(const ClusterBlocks& blocks, const sh::ShRgb& lighting) {
+  if (lighting.bands < blocks.bands) {
+    throw InputError(
+        fmt::format("lighting: {} bands are fewer than the transfer's {}", lighting.bands, blocks.bands));
+  }
+  const std::size_t coefficients = coefficients_of(blocks);
+  std::vector<float> lights;
+  for (std::size_t i = 0; i < coefficients; ++i) {
+    for (int c = 0; c < 3; ++c) lights.push_back(static_cast<float>(lighting.coefficients[i][c]));
+  }
+  const std::size_t count = whole_blocks(blocks.constants);
+  std::vector<float> lit(3 * kClusterLanes * count);
+  light_constants({blocks.constant_vectors.data(), lights.data(), coefficients,
+                   static_cast<std::size_t>(blocks.channels)},
+                  count, lit.data());
+  return lit;
 }
 
 void put_code(std::uint8_t* plane, int stored_bits, std::size_t lane, float code) {
@@ -66,7 +95,9 @@ ClusterBlocks make_cluster_blocks(const compress::Compressed& compressed, const 
   }
   ClusterBlocks blocks;
   blocks.vertices = compressed.vertices;
-  blocks.constants = constants_of(compressed, like);
+  blocks.bands = like.bands;
+  blocks.channels = like.channels;
+  put_constants(compressed, blocks);
   for (const int bits : compressed.bits) {
     blocks.stored_bits.push_back(std::max(bits, 8));
     blocks.block_bytes += kClusterLanes * static_cast<std::size_t>(blocks.stored_bits.back() / 8);
@@ -91,13 +122,9 @@ void unit_albedo_exit_radiance(const ClusterBlocks& blocks, const sh::ShRgb& lig
     throw InputError(fmt::format("relight: {} places for {} vertices", out.size(), blocks.vertices));
   }
   static_assert(sizeof(Rgb) == 3 * sizeof(float));
-  const std::vector<Rgb> constants = unit_albedo_exit_radiance(blocks.constants, lighting);
-  const ClusterInput in{reinterpret_cast<const float*>(constants.data()),
-                        blocks.stored_bits.data(),
-                        blocks.stored_bits.size(),
-                        blocks.cluster.data(),
-                        blocks.vertex.data(),
-                        blocks.codes.data(),
+  const std::vector<float> constants = lit_constants(blocks, lighting);
+  const ClusterInput in{constants.data(),      blocks.stored_bits.data(), blocks.stored_bits.size(),
+                        blocks.cluster.data(), blocks.vertex.data(),      blocks.codes.data(),
                         blocks.block_bytes};
   parallel_for((blocks.cluster.size() + kBlocksAtATime - 1) / kBlocksAtATime, threads, [&](std::size_t part) {
     const std::size_t first = part * kBlocksAtATime;

@@ -19,8 +19,11 @@ inline constexpr std::size_t kClusterLanes = 16;
 /// of a cluster is filled up with its last vertex.
 struct ClusterBlocks {
   std::size_t vertices = 0;
-  transfer::Transfer
-      constants;  // mean, axis 0, axis 1, … of cluster 0, then of cluster 1, …, as if they were vertices
+  int bands = 0;
+  int channels = 1;           // 1 or 3, as Transfer's
+  std::size_t constants = 0;  // mean, axis 0, axis 1, … of cluster 0, then of cluster 1, …
+  /// [block of constants][channel][coefficient][lane], filled up with zeros.
+  sh::AlignedVector<float> constant_vectors;
   std::vector<int> stored_bits;           // [component] 8 (codes of 4 bits too), 16, 32
   std::size_t block_bytes = 0;            // of one block's codes
   std::vector<std::uint32_t> cluster;     // [block]
@@ -34,8 +37,9 @@ struct ClusterBlocks {
                                                 const transfer::Transfer& like);
 
 /// Exit radiance for unit albedo at every vertex, as of the decoded transfer: sum over k of code_k e_ck + e_c, where e_c and e_ck
-/// are the dot products of the light with the mean and the axes of the vertex's cluster [1, eq. 7]. In float: within (K + 2)
-/// 2^-24 sum |code_k e_ck| of exact sums. Same bits for any number of threads (0 = all).
+/// are the dot products of the light with the mean and the axes of the vertex's cluster [1, eq. 7]. In float: within
+/// (n^2 + K + 3) 2^-24 (sum_i |mean_i l_i| + sum_k |code_k| sum_i |axis_ki l_i|) of exact sums. Same bits for any number of
+/// threads (0 = all).
 /// @param out  one place a vertex
 /// @throws InputError when the lighting has fewer bands than the transfer, or for another number of places
 void unit_albedo_exit_radiance(const ClusterBlocks& blocks, const sh::ShRgb& lighting, std::span<Rgb> out,

@@ -62,6 +62,36 @@ HWY_INLINE void sum_block(D d, const ClusterInput& in, const float* constants, c
   }
 }
 
+/// Two sums, of even and odd coefficients, so that one need not wait for the other.
+template <class D>
+HWY_INLINE hn::Vec<D> light_vector(D d, const float* vectors, const float* lights, std::size_t coefficients) {
+  auto even = hn::Zero(d);
+  auto odd = hn::Zero(d);
+  std::size_t i = 0;
+  for (; i + 2 <= coefficients; i += 2) {
+    even = hn::MulAdd(hn::LoadU(d, vectors + i * kClusterLanes), hn::Set(d, lights[3 * i]), even);
+    odd = hn::MulAdd(hn::LoadU(d, vectors + (i + 1) * kClusterLanes), hn::Set(d, lights[3 * i + 3]), odd);
+  }
+  if (i < coefficients)
+    even = hn::MulAdd(hn::LoadU(d, vectors + i * kClusterLanes), hn::Set(d, lights[3 * i]), even);
+  return hn::Add(even, odd);
+}
+
+void light_blocks(const ConstantInput& in, std::size_t blocks, float* out) {
+  const hn::CappedTag<float, kClusterLanes> d;
+  const std::size_t channel = in.coefficients * kClusterLanes;
+  const std::size_t step = in.channels == 3 ? channel : 0;  // from a channel's coefficients to the next one's
+  for (std::size_t block = 0; block < blocks; ++block) {
+    for (std::size_t lane = 0; lane < kClusterLanes; lane += hn::Lanes(d)) {
+      const float* from = in.vectors + block * in.channels * channel + lane;
+      const auto r = light_vector(d, from, in.lights, in.coefficients);
+      const auto g = light_vector(d, from + step, in.lights + 1, in.coefficients);
+      const auto b = light_vector(d, from + 2 * step, in.lights + 2, in.coefficients);
+      hn::StoreInterleaved3(r, g, b, d, out + 3 * (block * kClusterLanes + lane));
+    }
+  }
+}
+
 void sum_range(const ClusterInput& in, std::size_t first, std::size_t end, float* out) {
   const hn::CappedTag<float, kClusterLanes> d;
   HWY_ALIGN float sums[3 * kClusterLanes];
@@ -87,7 +117,12 @@ HWY_AFTER_NAMESPACE();
 
 namespace plumbline::relight {
 
+HWY_EXPORT(light_blocks);
 HWY_EXPORT(sum_range);
+
+void light_constants(const ConstantInput& in, std::size_t blocks, float* out) {
+  HWY_DYNAMIC_DISPATCH(light_blocks)(in, blocks, out);
+}
 
 void sum_clusters(const ClusterInput& in, std::size_t first, std::size_t end, float* out) {
   HWY_DYNAMIC_DISPATCH(sum_range)(in, first, end, out);

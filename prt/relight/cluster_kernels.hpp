@@ -6,6 +6,17 @@
 
 namespace plumbline::relight {
 
+/// Vectors whose exit radiance is wanted.
+struct ConstantInput {
+  const float* vectors;  // [block][channel][coefficient][lane]
+  const float* lights;   // [coefficient][r, g, b]
+  std::size_t coefficients;
+  std::size_t channels;  // 1 or 3
+};
+
+/// out[3 vector + channel] = sum_i vector_i light_i,channel, for all the lanes of so many blocks.
+void light_constants(const ConstantInput& in, std::size_t blocks, float* out);
+
 /// As ClusterBlocks holds them.
 struct ClusterInput {
   const float* constants;  // [cluster][1 + components][r, g, b]
