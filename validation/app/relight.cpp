@@ -1,14 +1,16 @@
 // plumbline relight: a baked scene under a light.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "prt/relight/cpu.hpp"
 #include "prt/transfer/baked_file.hpp"
 #include "reference/base/error.hpp"
-#include "reference/image/exr.hpp"
 #include "validation/app/options.hpp"
 #include "validation/app/points_csv.hpp"
+#include "validation/app/relight_light.hpp"
+#include "validation/app/relight_sequence.hpp"
 #include "validation/app/verbs.hpp"
 
 namespace plumbline::app {
@@ -17,6 +19,8 @@ namespace {
 struct Options {
   std::string input;
   LightOptions light;
+  MixOptions mix;
+  SequenceOptions sequence;
   std::string camera;
   std::string size = "256x256";
   std::string backend = "cpu";
@@ -46,52 +50,105 @@ std::string csv_of(const scene::Scene& scene, const std::vector<Rgb>& unit_albed
 
 // What makes the image again: no output names and no threads.
 std::string reproducing_command(const Options& o) {
-  std::string command = fmt::format("plumbline relight {}", quoted(o.input)) + command_text(o.light);
+  std::string command = fmt::format("plumbline relight {}", quoted(o.input)) + command_text(o.light) +
+                        command_text(o.mix) + command_text(o.sequence);
   if (!o.camera.empty()) command += " --camera " + quoted(o.camera);
   return command + fmt::format(" --size {} --spp {} --backend {}", o.size, o.spp, o.backend);
 }
 
-void write_view(const Options& options, const transfer::Baked& baked, const light::Environment& environment,
-                const std::vector<Rgb>& unit_albedo_radiance) {
+image::LayeredImage view_of(const Options& options, const transfer::Baked& baked, const TurnedLight& light,
+                            const std::string& environment, const std::vector<Rgb>& unit_albedo_radiance) {
   const Size size = parse_size(options.size);
   const relight::ViewSettings view{size.width, size.height, grid_of(options.spp), options.threads};
-  image::LayeredImage image =
-      relight::render_view(baked.scene, unit_albedo_radiance, camera_of(baked.scene, options.camera), view,
-                           [&](const Vec3& direction) { return light::radiance(environment, direction); });
+  image::LayeredImage image = relight::render_view(
+      baked.scene, unit_albedo_radiance, camera_of(baked.scene, options.camera), view, light.background);
   image.attributes = {{"plumbline.version", PLUMBLINE_VERSION},
                       {"plumbline.baked", options.input},
                       {"plumbline.sceneHash", scene::fingerprint(baked.scene)},
-                      {"plumbline.environment", environment.name},
+                      {"plumbline.environment", environment},
                       {"plumbline.environmentLookup", options.light.lookup},
                       {"plumbline.bands", std::to_string(baked.transfer.bands)},
                       {"plumbline.transfer", std::string(to_string(baked.transfer.kind))},
                       {"plumbline.command", reproducing_command(options)}};
-  image::write_exr(options.output, image);
+  return image;
+}
+
+/// Means over all frames.
+struct Times {
+  double projection = 0.0;  // of the light, once
+  double relight = 0.0;     // a frame: turning and mixing the light, sums at the vertices
+  double frame = 0.0;       // a frame with its picture, files written
+};
+
+Times relight_frames(const Options& options, const transfer::Baked& baked, std::string& environment) {
+  Times times;
+  const auto start = std::chrono::steady_clock::now();
+  const ProjectedLight light =
+      load_projected(options.light, options.mix, baked.transfer.bands, options.threads);
+  environment = light.environment.name;
+  times.projection = seconds_since(start);
+  const relight::TransferBlocks transfer = relight::make_blocks(baked.transfer, options.threads);
+  std::vector<Rgb> radiance(baked.transfer.vertices);
+  Strip strip(options.sequence, parse_size(options.size));
+  const int frames = options.sequence.frames;
+  const int count = std::max(1, frames);
+  const bool is_pictured = !options.output.empty() || !options.sequence.strip.empty();
+  for (int frame = 0; frame < count; ++frame) {
+    const auto frame_start = std::chrono::steady_clock::now();
+    const TurnedLight turned = light_turned(light, degrees_of_frame(options.light, frame, frames));
+    relight::unit_albedo_exit_radiance(transfer, turned.coefficients, radiance, options.threads);
+    times.relight += seconds_since(frame_start) / count;
+    if (is_pictured) {
+      const image::LayeredImage picture = view_of(options, baked, turned, environment, radiance);
+      strip.add(picture);
+      if (!options.output.empty())
+        write_picture(frame_path(options.output, frame, frames), picture, options.sequence.exposure_stops);
+    }
+    times.frame += seconds_since(frame_start) / count;
+  }
+  strip.write();
+  if (!options.vertices.empty()) write_output(options.vertices, csv_of(baked.scene, radiance));
+  return times;
+}
+
+/// Refuses before the work what could not be written, or makes no sense.
+void require_sense(const Options& options) {
+  if (options.output.empty() && options.vertices.empty() && options.sequence.strip.empty())
+    throw InputError("relight: nothing to do: give -o OUT.exr, --strip OUT.png or --vertices OUT.csv");
+  if (options.sequence.frames > 0 && !options.vertices.empty())
+    throw InputError("--vertices: of one light only: leave out --frames");
+  const Destination vertices{"--vertices", options.vertices, ""};
+  const Destination json{"--json", options.json, ""};
+  require_destinations({vertices, json});
+  const Destination strip{"--strip", options.sequence.strip, ".png"};
+  for (const Destination& picture :
+       picture_destinations(options.output, options.sequence, parse_size(options.size)))
+    require_destinations({picture, strip, vertices, json});
 }
 
 int run(const Options& options) {
-  if (options.output.empty() && options.vertices.empty())
-    throw InputError("relight: nothing to do: give -o OUT.exr or --vertices OUT.csv");
-  (void)parse_size(options.size);  // refuse it before the work
-  require_destinations(
-      {{"-o", options.output, ".exr"}, {"--vertices", options.vertices, ""}, {"--json", options.json, ""}});
+  require_sense(options);
   const transfer::Baked baked = transfer::load_baked(options.input);
   (void)camera_of(baked.scene, options.camera);
-  const light::Environment environment = load(options.light);
-  const auto start = std::chrono::steady_clock::now();
-  const sh::ShRgb lighting = sh::project_radiance(environment, baked.transfer.bands);
-  const std::vector<Rgb> radiance = relight::unit_albedo_exit_radiance(baked.transfer, lighting);
-  const double seconds = seconds_since(start);
-  if (!options.output.empty()) write_view(options, baked, environment, radiance);
-  if (!options.vertices.empty()) write_output(options.vertices, csv_of(baked.scene, radiance));
-  write_json(options.json, {{"input", options.input},
-                            {"environment", environment.name},
-                            {"environment_lookup", options.light.lookup},
-                            {"bands", baked.transfer.bands},
-                            {"transfer", std::string(to_string(baked.transfer.kind))},
-                            {"backend", options.backend},
-                            {"vertices", baked.transfer.vertices},
-                            {"seconds_lighting", seconds}});
+  std::string environment;
+  const Times times = relight_frames(options, baked, environment);
+  nlohmann::json json = {{"input", options.input},
+                         {"environment", environment},
+                         {"environment_lookup", options.light.lookup},
+                         {"bands", baked.transfer.bands},
+                         {"transfer", std::string(to_string(baked.transfer.kind))},
+                         {"backend", options.backend},
+                         {"vertices", baked.transfer.vertices},
+                         {"frames", std::max(1, options.sequence.frames)},
+                         {"seconds_lighting", times.projection + times.relight},
+                         {"seconds_projection", times.projection},
+                         {"seconds_relight", times.relight},
+                         {"seconds_frame", times.frame}};
+  if (!options.mix.source.empty()) {
+    json["mixed_in"] = options.mix.source;
+    json["mix_weight"] = options.mix.weight;
+  }
+  write_json(options.json, json);
   return kSuccess;
 }
 
@@ -102,6 +159,8 @@ void register_relight(CLI::App& app, Action& chosen) {
   CLI::App* verb = app.add_subcommand("relight", "show a baked scene under a light");
   verb->add_option("BAKED", options->input, "file written by `plumbline bake`")->required();
   add_light_options(*verb, options->light, true);
+  add_mix_option(*verb, options->mix);
+  add_sequence_options(*verb, options->sequence);
   add_camera_option(*verb, options->camera);
   add_size(*verb, options->size);
   add_whole_number(*verb, "--spp", options->spp, {1, 4096},
@@ -109,7 +168,7 @@ void register_relight(CLI::App& app, Action& chosen) {
   verb->add_option("--backend", options->backend, "what multiplies light and transfer")
       ->check(CLI::IsMember({"cpu"}));
   add_threads(*verb, options->threads);
-  add_output(*verb, options->output, "OpenEXR image to write");
+  add_output(*verb, options->output, "OpenEXR image to write, or a PNG");
   verb->add_option("--vertices", options->vertices,
                    "CSV of irradiance E and exit radiance L at every vertex, or - for standard output");
   add_json(*verb, options->json, "a summary");
