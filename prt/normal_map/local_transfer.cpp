@@ -80,7 +80,7 @@ class PointBaker {
     for (std::uint32_t r = 0; r < kShifts; ++r) {
       const glm::dvec2 shift = transfer::random_shift(settings_.seed, stream, r);
       for (int s = 0; s < per_shift; ++s) {
-        const glm::dvec2 u = transfer::shifted_lattice_point(static_cast<std::uint64_t>(s), shift);
+        const glm::dvec2 u = transfer::shifted_sequence_point(static_cast<std::uint64_t>(s), shift);
         const Vec3d direction = hemisphere_direction(Vec3d(point.geometric_normal), u);
         const Vec3 ray(glm::normalize(Vec3(direction)));
         if (!(glm::dot(ray, point.geometric_normal) > 0.0F)) continue;

@@ -44,6 +44,15 @@ double RandomNumbers::next() {
   return to_unit(next_random(state_));
 }
 
+glm::dvec2 shifted_sequence_point(std::uint64_t i, const glm::dvec2& shift) {
+  // 1 / p and 1 / p^2 for the real root p of p^3 = p + 1.
+  constexpr double kA = 0.7548776662466927;
+  constexpr double kB = 0.5698402909980532;
+  const double n = static_cast<double>(i);
+  const glm::dvec2 point(shift.x + n * kA, shift.y + n * kB);
+  return point - glm::floor(point);
+}
+
 glm::dvec2 random_shift(std::uint64_t seed, std::uint64_t stream, std::uint32_t randomisation) {
   RandomNumbers numbers(seed, stream, randomisation);
   const double x = numbers.next();

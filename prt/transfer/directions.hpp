@@ -16,6 +16,11 @@ namespace plumbline::transfer {
 /// is integrated to second order (Hickernell's tent, 2002).
 [[nodiscard]] glm::dvec2 lattice_point(std::uint64_t i, std::uint64_t n, const glm::dvec2& shift);
 
+/// Point i of the rank-1 sequence with the generators of the plastic number (Roberts' R2: the two-dimensional
+/// golden ratio), shifted by `shift` modulo 1 (Cranley & Patterson 1976): for a uniform shift every point is
+/// uniform on [0, 1)^2. Unlike the lattice it may end anywhere.
+[[nodiscard]] glm::dvec2 shifted_sequence_point(std::uint64_t i, const glm::dvec2& shift);
+
 /// A uniform shift from (seed, stream, randomisation).
 [[nodiscard]] glm::dvec2 random_shift(std::uint64_t seed, std::uint64_t stream, std::uint32_t randomisation);
 

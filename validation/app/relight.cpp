@@ -1,16 +1,20 @@
 // plumbline relight: a baked scene under a light.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <memory>
+#include <optional>
 
 #include "prt/relight/cluster_blocks.hpp"
 #include "prt/relight/cpu.hpp"
 #include "prt/transfer/baked_file.hpp"
 #include "reference/base/error.hpp"
-#include "reference/image/exr.hpp"
 #include "validation/app/options.hpp"
 #include "validation/app/points_csv.hpp"
 #include "validation/app/relight_gl.hpp"
+#include "validation/app/relight_light.hpp"
+#include "validation/app/relight_sequence.hpp"
 #include "validation/app/verbs.hpp"
 
 namespace plumbline::app {
@@ -19,6 +23,8 @@ namespace {
 struct Options {
   std::string input;
   LightOptions light;
+  MixOptions mix;
+  SequenceOptions sequence;
   std::string camera;
   std::string size = "256x256";
   std::string backend = "cpu";
@@ -49,7 +55,8 @@ std::string csv_of(const scene::Scene& scene, const std::vector<Rgb>& unit_albed
 
 // What makes the image again: no output names and no threads.
 std::string reproducing_command(const Options& o) {
-  std::string command = fmt::format("plumbline relight {}", quoted(o.input)) + command_text(o.light);
+  std::string command = fmt::format("plumbline relight {}", quoted(o.input)) + command_text(o.light) +
+                        command_text(o.mix) + command_text(o.sequence);
   if (!o.camera.empty()) command += " --camera " + quoted(o.camera);
   command += fmt::format(" --size {} --spp {} --backend {}", o.size, o.spp, o.backend);
   if (o.backend != "gl") return command;
@@ -57,72 +64,152 @@ std::string reproducing_command(const Options& o) {
                                o.gl.target);
 }
 
-GlView view_of(const Options& options, const transfer::Baked& baked, const light::Environment& environment) {
+View view_of(const Options& options, const transfer::Baked& baked, const TurnedLight& light) {
   const Size size = parse_size(options.size);
   return {camera_of(baked.scene, options.camera),
           {size.width, size.height, grid_of(options.spp), options.threads},
-          [&](const Vec3& direction) { return light::radiance(environment, direction); }};
+          light.background};
 }
 
-void write_view(const Options& options, const transfer::Baked& baked, const light::Environment& environment,
-                image::LayeredImage image) {
+image::LayeredImage with_attributes(image::LayeredImage image, const Options& options,
+                                    const transfer::Baked& baked, const std::string& environment) {
   image.attributes = {{"plumbline.version", PLUMBLINE_VERSION},
                       {"plumbline.baked", options.input},
                       {"plumbline.sceneHash", scene::fingerprint(baked.scene)},
-                      {"plumbline.environment", environment.name},
+                      {"plumbline.environment", environment},
                       {"plumbline.environmentLookup", options.light.lookup},
                       {"plumbline.bands", std::to_string(baked.transfer.bands)},
                       {"plumbline.transfer", std::string(to_string(baked.transfer.kind))},
                       {"plumbline.command", reproducing_command(options)}};
-  image::write_exr(options.output, image);
+  return image;
 }
 
-std::vector<Rgb> exit_radiance(const transfer::Baked& baked, const sh::ShRgb& lighting, int threads) {
-  if (!baked.compressed) return relight::unit_albedo_exit_radiance(baked.transfer, lighting);
-  return relight::unit_albedo_exit_radiance(relight::make_cluster_blocks(*baked.compressed, baked.transfer),
-                                            lighting, threads);
+/// What multiplies light and transfer: made once, asked for every frame.
+class Relighter {
+ public:
+  Relighter(const Options& options, const transfer::Baked& baked) : baked_(baked), threads_(options.threads) {
+    if (options.backend == "gl") {
+      gl_ = std::make_unique<GlRelighter>(options.gl, baked);
+    } else if (baked.compressed) {
+      clusters_ = relight::make_cluster_blocks(*baked.compressed, baked.transfer);
+    } else {
+      blocks_ = relight::make_blocks(baked.transfer, threads_);
+    }
+  }
+  [[nodiscard]] Relit relight(const sh::ShRgb& lighting, const std::optional<View>& view) {
+    return gl_ ? gl_->relight(lighting, view) : on_cpu(lighting, view);
+  }
+  /// Null unless OpenGL did it.
+  [[nodiscard]] nlohmann::json summary(const sh::ShRgb& lighting, const std::optional<View>& view) {
+    return gl_ ? gl_->summary(lighting, view) : nlohmann::json();
+  }
+
+ private:
+  [[nodiscard]] Relit on_cpu(const sh::ShRgb& lighting, const std::optional<View>& view) const {
+    Relit result{std::vector<Rgb>(baked_.transfer.vertices), std::nullopt};
+    if (clusters_) {
+      relight::unit_albedo_exit_radiance(*clusters_, lighting, result.unit_albedo_radiance, threads_);
+    } else {
+      relight::unit_albedo_exit_radiance(*blocks_, lighting, result.unit_albedo_radiance, threads_);
+    }
+    if (view) {
+      result.image = relight::render_view(baked_.scene, result.unit_albedo_radiance, view->camera,
+                                          view->settings, view->background);
+    }
+    return result;
+  }
+
+  const transfer::Baked& baked_;
+  int threads_;
+  std::unique_ptr<GlRelighter> gl_;
+  std::optional<relight::ClusterBlocks> clusters_;
+  std::optional<relight::TransferBlocks> blocks_;
+};
+
+/// Means over all frames, and what the backend says of itself.
+struct Outcome {
+  std::string environment;
+  double projection_seconds = 0.0;  // of the light, once
+  double relight_seconds = 0.0;     // a frame: turning and mixing the light, sums at the vertices
+  double frame_seconds = 0.0;       // a frame with its picture, files written
+  nlohmann::json gl;
+};
+
+Outcome relight_frames(const Options& options, const transfer::Baked& baked) {
+  Outcome outcome;
+  const auto start = std::chrono::steady_clock::now();
+  const ProjectedLight light =
+      load_projected(options.light, options.mix, baked.transfer.bands, options.threads);
+  outcome.environment = light.environment.name;
+  outcome.projection_seconds = seconds_since(start);
+  Relighter relighter(options, baked);
+  Strip strip(options.sequence, parse_size(options.size));
+  const int frames = options.sequence.frames;
+  const int count = std::max(1, frames);
+  const bool is_pictured =
+      !options.output.empty() || !options.sequence.strip.empty() || options.gl.is_audited;
+  for (int frame = 0; frame < count; ++frame) {
+    const auto frame_start = std::chrono::steady_clock::now();
+    const TurnedLight turned = light_turned(light, degrees_of_frame(options.light, frame, frames));
+    std::vector<Rgb> radiance = relighter.relight(turned.coefficients, std::nullopt).unit_albedo_radiance;
+    outcome.relight_seconds += seconds_since(frame_start) / count;
+    std::optional<View> view;
+    if (is_pictured) {
+      view = view_of(options, baked, turned);
+      const image::LayeredImage picture = with_attributes(*relighter.relight(turned.coefficients, view).image,
+                                                          options, baked, outcome.environment);
+      strip.add(picture);
+      if (!options.output.empty())
+        write_picture(frame_path(options.output, frame, frames), picture, options.sequence.exposure_stops);
+    }
+    outcome.frame_seconds += seconds_since(frame_start) / count;
+    if (!options.vertices.empty()) write_output(options.vertices, csv_of(baked.scene, radiance));
+    if (frame + 1 == count) outcome.gl = relighter.summary(turned.coefficients, view);
+  }
+  strip.write();
+  return outcome;
+}
+
+/// Refuses before the work what could not be written, or makes no sense.
+void require_sense(const Options& options) {
+  require_valid(options.gl, options.backend);
+  if (options.output.empty() && options.vertices.empty() && options.sequence.strip.empty() &&
+      !options.gl.is_audited)
+    throw InputError("relight: nothing to do: give -o OUT.exr, --strip OUT.png or --vertices OUT.csv");
+  if (options.sequence.frames > 0 && !options.vertices.empty())
+    throw InputError("--vertices: of one light only: leave out --frames");
+  const Destination vertices{"--vertices", options.vertices, ""};
+  const Destination json{"--json", options.json, ""};
+  require_destinations({vertices, json});
+  const Destination strip{"--strip", options.sequence.strip, ".png"};
+  for (const Destination& picture :
+       picture_destinations(options.output, options.sequence, parse_size(options.size)))
+    require_destinations({picture, strip, vertices, json});
 }
 
 int run(const Options& options) {
-  require_valid(options.gl, options.backend);
-  if (options.output.empty() && options.vertices.empty() && !options.gl.is_audited)
-    throw InputError("relight: nothing to do: give -o OUT.exr or --vertices OUT.csv");
-  (void)parse_size(options.size);  // refuse it before the work
-  require_destinations(
-      {{"-o", options.output, ".exr"}, {"--vertices", options.vertices, ""}, {"--json", options.json, ""}});
+  require_sense(options);
   const transfer::Baked baked = transfer::load_baked(options.input);
   (void)camera_of(baked.scene, options.camera);
-  const light::Environment environment = load(options.light);
-  const auto start = std::chrono::steady_clock::now();
-  const sh::ShRgb lighting = sh::project_radiance(environment, baked.transfer.bands);
-  std::vector<Rgb> radiance;
-  std::optional<image::LayeredImage> image;
-  nlohmann::json gl;
-  std::optional<GlView> view;
-  if (!options.output.empty() || options.gl.is_audited) view = view_of(options, baked, environment);
-  if (options.backend == "gl") {
-    GlRelit relit = relight_by_gl(options.gl, baked, lighting, view);
-    radiance = std::move(relit.unit_albedo_radiance);
-    image = std::move(relit.image);
-    gl = std::move(relit.summary);
-  } else {
-    radiance = exit_radiance(baked, lighting, options.threads);
+  const Outcome outcome = relight_frames(options, baked);
+  nlohmann::json json = {{"input", options.input},
+                         {"environment", outcome.environment},
+                         {"environment_lookup", options.light.lookup},
+                         {"bands", baked.transfer.bands},
+                         {"transfer", std::string(to_string(baked.transfer.kind))},
+                         {"backend", options.backend},
+                         {"vertices", baked.transfer.vertices},
+                         {"frames", std::max(1, options.sequence.frames)},
+                         {"seconds_lighting", outcome.projection_seconds + outcome.relight_seconds},
+                         {"seconds_projection", outcome.projection_seconds},
+                         {"seconds_relight", outcome.relight_seconds},
+                         {"seconds_frame", outcome.frame_seconds}};
+  if (!options.mix.source.empty()) {
+    json["mixed_in"] = options.mix.source;
+    json["mix_weight"] = options.mix.weight;
   }
-  const double seconds = seconds_since(start);
-  if (view && !image)
-    image = relight::render_view(baked.scene, radiance, view->camera, view->settings, view->background);
-  if (!options.output.empty()) write_view(options, baked, environment, *std::move(image));
-  if (!options.vertices.empty()) write_output(options.vertices, csv_of(baked.scene, radiance));
-  nlohmann::json summary = {{"input", options.input},
-                            {"environment", environment.name},
-                            {"environment_lookup", options.light.lookup},
-                            {"bands", baked.transfer.bands},
-                            {"transfer", std::string(to_string(baked.transfer.kind))},
-                            {"backend", options.backend},
-                            {"vertices", baked.transfer.vertices},
-                            {"seconds_lighting", seconds}};
-  if (!gl.is_null()) summary["gl"] = gl;
-  write_json(options.json, summary);
+  if (!outcome.gl.is_null()) json["gl"] = outcome.gl;
+  write_json(options.json, json);
   return kSuccess;
 }
 
@@ -133,6 +220,8 @@ void register_relight(CLI::App& app, Action& chosen) {
   CLI::App* verb = app.add_subcommand("relight", "show a baked scene under a light");
   verb->add_option("BAKED", options->input, "file written by `plumbline bake`")->required();
   add_light_options(*verb, options->light, true);
+  add_mix_option(*verb, options->mix);
+  add_sequence_options(*verb, options->sequence);
   add_camera_option(*verb, options->camera);
   add_size(*verb, options->size);
   add_whole_number(*verb, "--spp", options->spp, {1, 4096},
@@ -141,7 +230,7 @@ void register_relight(CLI::App& app, Action& chosen) {
       ->check(CLI::IsMember({"cpu", "gl"}));
   add_gl_options(*verb, options->gl);
   add_threads(*verb, options->threads);
-  add_output(*verb, options->output, "OpenEXR image to write");
+  add_output(*verb, options->output, "OpenEXR image to write, or a PNG");
   verb->add_option("--vertices", options->vertices,
                    "CSV of irradiance E and exit radiance L at every vertex, or - for standard output");
   add_json(*verb, options->json, "a summary");

@@ -33,44 +33,69 @@ void require_valid(const GlOptions& options, const std::string& backend) {
   throw InputError(fmt::format("relight: --gl-… options need --backend gl, got --backend {}", backend));
 }
 
-GlRelit relight_by_gl(const GlOptions& options, const transfer::Baked& baked, const sh::ShRgb& lighting,
-                      const std::optional<GlView>& view) {
-  using namespace relight::gl;
-  const auto seconds = [](const Context& context, const std::function<void()>& work) {
+struct GlRelighter::Impl {
+  GlOptions options;
+  const transfer::Baked& baked;
+  relight::gl::Context context;
+  std::optional<relight::gl::Renderer> renderer;
+  nlohmann::json summary;
+
+  /// Runs it, and records the seconds of the first time under a name.
+  void timed(const char* name, const std::function<void()>& work) {
     const auto start = std::chrono::steady_clock::now();
     work();
     context.gl().Finish();
-    return seconds_since(start);
-  };
+    if (!summary.contains(name)) summary[name] = seconds_since(start);
+  }
+};
+
+GlRelighter::GlRelighter(const GlOptions& options, const transfer::Baked& baked) {
+  using namespace relight::gl;
   const auto start = std::chrono::steady_clock::now();
-  const Context context(settings_from_environment(provider_from_string(options.context)));
-  GlRelit result;
-  result.summary = {{"driver", context.description()},
+  impl_.reset(new Impl{options,
+                       baked,
+                       Context(settings_from_environment(provider_from_string(options.context))),
+                       std::nullopt,
+                       {}});
+  impl_->summary = {{"driver", impl_->context.description()},
                     {"storage", options.storage},
                     {"target", options.target},
                     {"seconds_context", seconds_since(start)}};
   const RendererSettings settings{storage_from_string(options.storage), target_from_string(options.target)};
-  std::optional<Renderer> renderer;
-  result.summary["seconds_upload"] =
-      seconds(context, [&] { renderer.emplace(context, baked.scene, baked.transfer, settings); });
-  result.summary["sums"] = renderer->sums();
-  result.summary["seconds_vertices"] = seconds(context, [&] { renderer->set_light(lighting); });
-  result.unit_albedo_radiance = renderer->unit_albedo_exit_radiance();
-  if (!view) return result;
-  result.summary["seconds_image"] = seconds(context, [&] {
-    result.image = render_view(*renderer, view->camera, view->settings, view->background);
-  });
-  // What an animation spends on a frame once everything is compiled and uploaded.
-  result.summary["seconds_frame"] = seconds(context, [&] {
-    renderer->set_light(lighting);
-    renderer->draw(nullptr);
-  });
-  renderer.reset();
-  if (options.is_audited) {
-    result.summary["audit"] =
-        gl_audit(context, baked, lighting, view->camera, view->settings.width, view->settings.height);
+  impl_->timed("seconds_upload",
+               [&] { impl_->renderer.emplace(impl_->context, baked.scene, baked.transfer, settings); });
+  impl_->summary["sums"] = impl_->renderer->sums();
+}
+
+GlRelighter::~GlRelighter() = default;
+
+Relit GlRelighter::relight(const sh::ShRgb& lighting, const std::optional<View>& view) {
+  relight::gl::Renderer& renderer = *impl_->renderer;
+  Relit result;
+  impl_->timed("seconds_vertices", [&] { renderer.set_light(lighting); });
+  result.unit_albedo_radiance = renderer.unit_albedo_exit_radiance();
+  if (view) {
+    impl_->timed("seconds_image", [&] {
+      result.image = relight::gl::render_view(renderer, view->camera, view->settings, view->background);
+    });
+    // What an animation spends on a frame once everything is compiled and uploaded.
+    if (!impl_->summary.contains("seconds_frame")) {
+      impl_->timed("seconds_frame", [&] {
+        renderer.set_light(lighting);
+        renderer.draw(nullptr);
+      });
+    }
   }
   return result;
+}
+
+nlohmann::json GlRelighter::summary(const sh::ShRgb& lighting, const std::optional<View>& view) {
+  impl_->renderer.reset();
+  if (impl_->options.is_audited && view) {
+    impl_->summary["audit"] = gl_audit(impl_->context, impl_->baked, lighting, view->camera,
+                                       view->settings.width, view->settings.height);
+  }
+  return impl_->summary;
 }
 
 }  // namespace plumbline::app

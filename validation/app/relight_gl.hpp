@@ -2,15 +2,14 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "prt/relight/cpu.hpp"
 #include "prt/sh/lighting.hpp"
 #include "prt/transfer/baked_file.hpp"
+#include "validation/app/relight_backend.hpp"
 
 namespace plumbline::app {
 
@@ -24,18 +23,22 @@ void add_gl_options(CLI::App& verb, GlOptions& options);
 /// @throws InputError when they ask for something of OpenGL and the backend is another.
 void require_valid(const GlOptions& options, const std::string& backend);
 
-struct GlView {
-  scene::Camera camera;
-  relight::ViewSettings settings;
-  std::function<Rgb(const Vec3&)> background;
+/// A context with the baked scene uploaded. The baked scene must outlive it.
+class GlRelighter {
+ public:
+  /// @throws InputError or DeviceError, one line, when OpenGL cannot do it.
+  GlRelighter(const GlOptions& options, const transfer::Baked& baked);
+  ~GlRelighter();
+  GlRelighter(const GlRelighter&) = delete;
+  GlRelighter& operator=(const GlRelighter&) = delete;
+
+  [[nodiscard]] Relit relight(const sh::ShRgb& lighting, const std::optional<View>& view);
+  /// Which driver, the seconds of each step of the first picture, and the audit that was asked for: the last call.
+  [[nodiscard]] nlohmann::json summary(const sh::ShRgb& lighting, const std::optional<View>& view);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
-struct GlRelit {
-  std::vector<Rgb> unit_albedo_radiance;  // one a vertex
-  std::optional<image::LayeredImage> image;
-  nlohmann::json summary;  // which driver, and the seconds of each step
-};
-/// @throws InputError or DeviceError, one line, when OpenGL cannot do it.
-[[nodiscard]] GlRelit relight_by_gl(const GlOptions& options, const transfer::Baked& baked,
-                                    const sh::ShRgb& lighting, const std::optional<GlView>& view);
 
 }  // namespace plumbline::app

@@ -323,7 +323,7 @@ std::vector<Vec3d> shared_directions(int count, std::uint64_t seed) {
   const glm::dvec2 shift = transfer::random_shift(seed, 0, 0);
   std::vector<Vec3d> result;
   for (int i = 0; i < count; ++i) {
-    const glm::dvec2 u = transfer::shifted_lattice_point(static_cast<std::uint64_t>(i), shift);
+    const glm::dvec2 u = transfer::shifted_sequence_point(static_cast<std::uint64_t>(i), shift);
     const double z = 1.0 - 2.0 * u.y;
     const double across = std::sqrt(std::max(0.0, 1.0 - z * z));
     result.emplace_back(across * std::cos(2.0 * kPi * u.x), across * std::sin(2.0 * kPi * u.x), z);
