@@ -80,12 +80,13 @@ struct Size {
   }
 };
 
-Size size_of(const Imath::Box2i& window, int largest_side, const std::string& name) {
+Size size_of(const Imath::Box2i& window, int largest_side, std::size_t bytes, const std::string& name) {
   const auto width = static_cast<std::int64_t>(window.max.x) - window.min.x + 1;
   const auto height = static_cast<std::int64_t>(window.max.y) - window.min.y + 1;
   if (width < 1 || height < 1 || width > largest_side || height > largest_side ||
-      static_cast<std::size_t>(width * height) > kMaxPixels) {
-    throw InputError(fmt::format("{}: size {}x{} is out of range", name, width, height));
+      static_cast<std::size_t>(width * height) > kMaxPixels ||
+      !is_plausible(static_cast<std::size_t>(width * height), bytes)) {
+    throw InputError(fmt::format("{}: size {}x{} is out of range for {} bytes", name, width, height, bytes));
   }
   return {static_cast<int>(width), static_cast<int>(height)};
 }
@@ -107,7 +108,7 @@ LayeredImage read_exr(const std::filesystem::path& path) {
     if (!Imf::isOpenExrFile(stream)) throw InputError(name + ": is not an OpenEXR file");
     Imf::InputFile file(stream, 1);
     const Imath::Box2i window = file.header().dataWindow();
-    const Size size = size_of(window, kMaxSide, name);
+    const Size size = size_of(window, kMaxSide, bytes.size(), name);
     LayeredImage result{size.width, size.height, {}, {}};
     Imf::FrameBuffer buffer;
     for (auto it = file.header().channels().begin(); it != file.header().channels().end(); ++it) {
@@ -160,7 +161,7 @@ std::optional<Image> read_plain_exr(std::string_view bytes, const std::string& n
     Imf::InputFile file(stream, 1);
     if (!has_plain_colours(file.header().channels())) return std::nullopt;
     const Imath::Box2i window = file.header().dataWindow();
-    const Size size = size_of(window, kMaxPictureSide, name);
+    const Size size = size_of(window, kMaxPictureSide, bytes.size(), name);
     Image result = make_image(size.width, size.height);
     Imf::FrameBuffer buffer;
     for (int c = 0; c < 3; ++c) {

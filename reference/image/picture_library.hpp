@@ -15,6 +15,15 @@ namespace plumbline::image {
 /// The most texels a picture may have on a side.
 constexpr int kMaxPictureSide = 1 << 16;
 
+/// Whether a file of that many bytes can hold that many texels. The best ratios of the formats in use are those of one
+/// colour all over: 8256 texels a byte in PNG (1 bit, deflate's 1032), some 10,000 in OpenEXR's DWAB. A damaged header asks
+/// for more, and must not be given memory.
+[[nodiscard]] constexpr bool is_plausible(std::size_t texels, std::size_t bytes) {
+  constexpr std::size_t kMostPerByte = 16384;
+  constexpr std::size_t kAlways = std::size_t{1} << 20U;
+  return texels <= kAlways + kMostPerByte * bytes;
+}
+
 /// What a file stores: `channels` values a texel, row 0 at the top; integers as fractions of their largest.
 struct RawPicture {
   int width = 0;

@@ -27,10 +27,11 @@ OIIO::ImageSpec open_options() {
   return options;
 }
 
-RawPicture read_all(OIIO::ImageInput& input) {
+RawPicture read_all(OIIO::ImageInput& input, std::size_t bytes) {
   const OIIO::ImageSpec spec = input.spec();
   if (spec.width < 1 || spec.height < 1 || spec.width > kMaxPictureSide || spec.height > kMaxPictureSide ||
-      spec.nchannels < 1) {
+      spec.nchannels < 1 ||
+      !is_plausible(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height), bytes)) {
     fail("size " + std::to_string(spec.width) + "x" + std::to_string(spec.height) + " with " +
          std::to_string(spec.nchannels) + " channels is out of range");
   }
@@ -52,7 +53,7 @@ RawPicture decode(std::string_view bytes, const std::string& name) {
   options.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &source);
   auto input = OIIO::ImageInput::open(name, &options, &proxy);
   if (!input) fail(OIIO::geterror());
-  return read_all(*input);
+  return read_all(*input, bytes.size());
 }
 
 std::string encode_png(const Image8& image) {

@@ -9,6 +9,7 @@
 #include "validation/tests/app/command.hpp"
 
 namespace fs = std::filesystem;
+using namespace std::string_literals;
 
 namespace plumbline::image {
 namespace {
@@ -87,6 +88,30 @@ TEST_F(PictureLibraryTest, AMissingModuleIsOneClearLine) {
                                   contents()),
             "")
       << outcome.err;
+}
+
+// A header that asks for ten million texels in a file of some hundred bytes.
+TEST_F(PictureLibraryTest, ASizeThatTheBytesCannotHoldIsRefused) {
+  write_image("a.exr", 4, 2, 1.0F);
+  std::string bytes = read("a.exr");
+  const std::size_t window =
+      bytes.find("dataWindow\0box2i"s) + 10 + 1 + 5 + 1 + 4;          // names, zeros, the box's size
+  bytes.replace(window + 8, 8, "\xff\xff\x00\x00\x9f\x00\x00\x00"s);  // the last column and row
+  write("large.exr", bytes);
+  for (const bool is_layered : {false, true}) {
+    try {
+      is_layered ? (void)read_exr(path("large.exr")) : (void)image::read_image(path("large.exr"));
+      FAIL() << "not refused";
+    } catch (const InputError& error) {
+      EXPECT_TRUE(std::string(error.what()).starts_with(path("large.exr").string() + ": ")) << error.what();
+    }
+  }
+}
+
+TEST(PictureLibrary, TellsSizesThatNoFileOfSoFewBytesHolds) {
+  EXPECT_TRUE(is_plausible(1U << 20U, 0));
+  EXPECT_TRUE(is_plausible(8192U * 4096U, 4096));
+  EXPECT_FALSE(is_plausible(65536ULL * 65536ULL, 100000));
 }
 
 TEST(PictureLibrary, ATruncatedPictureIsRefusedByName) {
