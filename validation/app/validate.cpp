@@ -163,8 +163,9 @@ void register_validate(CLI::App& app, Action& chosen) {
   verb->add_option("--bands", options->bands, "band counts to judge (default: 3 5)")->delimiter(',');
   std::vector<std::string> names;
   for (const checks::Family& family : checks::families()) names.push_back(family.name);
-  verb->add_option("--checks", options->families,
-                   fmt::format("families to run: {} (default: all but truths)", fmt::join(names, ",")))
+  verb->add_option(
+          "--checks", options->families,
+          fmt::format("families to run: {} (default: all but bounces and truths)", fmt::join(names, ",")))
       ->delimiter(',')
       ->check(CLI::IsMember(names));
   verb->add_option("--tier", options->tier,
