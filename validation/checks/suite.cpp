@@ -8,6 +8,7 @@ const std::vector<Family>& families() {
       {"projection", "coefficients of each environment, convergence with bands", check_projection},
       {"transfer", "transfer vectors against closed forms", check_transfer},
       {"furnace", "white furnace on each scene", check_furnace},
+      {"bounces", "interreflected transfer, bounce by bounce", check_bounces, true},
       {"truths", "path tracer against closed forms of light transport", check_truths, true},
       {"images", "PRT images against path-traced ones", check_images},
       {"normal-maps", "normal-mapped PRT in seven forms against path tracing with the same map",

@@ -25,6 +25,9 @@ void check_transfer(const Suite& suite, report::Report& report);
 /// Path tracer and transfer in a white furnace, on each scene.
 void check_furnace(const Suite& suite, report::Report& report);
 
+/// Interreflected transfer against path-traced irradiance, bounce by bounce, and against an infinite corner's closed form.
+void check_bounces(const Suite& suite, report::Report& report);
+
 /// The path tracer against every closed form of light transport, and the judge itself: are its standard errors right,
 /// does it find biases as often as it says, does it cry wolf?
 void check_truths(const Suite& suite, report::Report& report);
