@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "prt/compress/quantise.hpp"
 
@@ -92,16 +93,36 @@ double largest_ratio(const std::vector<SizedError>& points, const std::string& o
   return largest;
 }
 
+namespace {
+
+/// VQ's error at a size, on the line between its neighbours in size (both axes logarithmic, as a power law is straight); below the smallest
+/// VQ that one's error; none above the largest.
+std::optional<double> vq_error_at(const std::vector<SizedError>& points, double bytes) {
+  const SizedError* below = nullptr;
+  const SizedError* above = nullptr;
+  for (const SizedError& point : points) {
+    if (point.method != "VQ") continue;
+    const bool is_above = point.bytes_per_vertex >= bytes;
+    const SizedError*& nearest = is_above ? above : below;
+    const bool is_nearer =
+        nearest == nullptr || (point.bytes_per_vertex < nearest->bytes_per_vertex) == is_above;
+    if (is_nearer) nearest = &point;
+  }
+  if (above == nullptr) return std::nullopt;
+  if (below == nullptr || above->bytes_per_vertex == bytes) return above->error;
+  const double share =
+      std::log(bytes / below->bytes_per_vertex) / std::log(above->bytes_per_vertex / below->bytes_per_vertex);
+  return below->error * std::pow(above->error / below->error, share);
+}
+
+}  // namespace
+
 double largest_ratio_to_vq(const std::vector<SizedError>& points, const std::string& of, int bits) {
   double largest = kNaN;
-  for (const SizedError& a : points) {
-    if (a.method != of || a.bits != bits) continue;
-    const SizedError* rival = nullptr;
-    for (const SizedError& b : points) {
-      const bool is_rival = b.method == "VQ" && b.bytes_per_vertex >= a.bytes_per_vertex;
-      if (is_rival && (rival == nullptr || b.bytes_per_vertex < rival->bytes_per_vertex)) rival = &b;
-    }
-    if (rival != nullptr) largest = larger(largest, a.error / rival->error);
+  for (const SizedError& point : points) {
+    if (point.method != of || point.bits != bits) continue;
+    if (const auto rival = vq_error_at(points, point.bytes_per_vertex))
+      largest = larger(largest, point.error / *rival);
   }
   return largest;
 }

@@ -39,7 +39,8 @@ struct CompressionGrid {
 /// Largest ratio of the errors of two methods at equal clusters, components and bits, so at equal size. NaN when there is no pair.
 [[nodiscard]] double largest_ratio(const std::vector<SizedError>& points, const std::string& of,
                                    const std::string& to);
-/// Largest ratio of the error of a method with weights of `bits` to VQ's, with for each point the smallest VQ that is at least as large. NaN when there is none.
+/// Largest ratio of the error of a method with weights of `bits` to VQ's at the same size, read off the straight line between the VQs
+/// next in size (logarithmic in both). Points larger than every VQ are left out; NaN when none is left.
 [[nodiscard]] double largest_ratio_to_vq(const std::vector<SizedError>& points, const std::string& of,
                                          int bits);
 /// Largest part by which weights of `bits` raise the error that exact weights leave, over a method's points. NaN when there is none.
