@@ -1,15 +1,25 @@
 #include "reference/integrate/direct_view.hpp"
 
+#include <algorithm>
+
 namespace plumbline::integrate {
 namespace {
 
 constexpr int kProbes = 4;  // in each direction
 constexpr double kUneven = 0.1;
 
-Rgb emission_through(const World& world, const PixelView& view, float x, float y) {
-  return emission_along(
-      world, view,
-      scene::ray_direction(view.plane, static_cast<float>(view.x) + x, static_cast<float>(view.y) + y));
+constexpr int kProbeCount = kProbes * kProbes;
+constexpr std::uint32_t kProbeRandomisation = 0xFFFFFFFFU;  // no sample of an image has it
+
+Vec3 direction_through(const PixelView& view, const Vec2& at) {
+  return scene::ray_direction(view.plane, static_cast<float>(view.x) + at.x,
+                              static_cast<float>(view.y) + at.y);
+}
+
+// From edge to edge: a lamp that covers a sliver of the pixel covers one of its corners.
+Vec2 probe(int i) {
+  const auto at = [](int k) { return static_cast<float>(k) / static_cast<float>(kProbes - 1); };
+  return {at(i % kProbes), at(i / kProbes)};
 }
 
 /// Nothing that a camera ray could meet shines.
@@ -33,16 +43,13 @@ bool is_emission_uneven(const World& world, const PixelView& view) {
   if (is_all_dark(world, view)) return false;
   RgbD sum(0.0);
   RgbD squares(0.0);
-  for (int i = 0; i < kProbes * kProbes; ++i) {
-    // From edge to edge: a lamp that covers a sliver of the pixel covers one of its corners.
-    const auto at = [](int k) { return static_cast<float>(k) / static_cast<float>(kProbes - 1); };
-    const RgbD emission(emission_through(world, view, at(i % kProbes), at(i / kProbes)));
+  for (int i = 0; i < kProbeCount; ++i) {
+    const RgbD emission(emission_along(world, view, direction_through(view, probe(i))));
     sum += emission;
     squares += emission * emission;
   }
-  constexpr double kCount = kProbes * kProbes;
-  const RgbD mean = sum / kCount;
-  const RgbD variance = squares / kCount - mean * mean;
+  const RgbD mean = sum / static_cast<double>(kProbeCount);
+  const RgbD variance = squares / static_cast<double>(kProbeCount) - mean * mean;
   const RgbD limit = kUneven * kUneven * mean * mean;
   return variance.r > limit.r || variance.g > limit.g || variance.b > limit.b;
 }
@@ -51,10 +58,39 @@ RgbD split_emission(const World& world, const PixelView& view, Sampler& sampler)
   const Sampler::Pair pair = sampler.next_pair();
   RgbD sum(0.0);
   for (std::uint32_t s = 0; s < kEmissionSplits; ++s) {
-    const Vec2 at = sampler.point(pair, s, kEmissionSplits);
-    sum += RgbD(emission_through(world, view, at.x, at.y));
+    sum +=
+        RgbD(emission_along(world, view, direction_through(view, sampler.point(pair, s, kEmissionSplits))));
   }
   return sum / static_cast<double>(kEmissionSplits);
+}
+
+RgbD emission_share(const World& world, const PixelView& view, int max_bounces, std::uint64_t seed,
+                    std::uint64_t pixel) {
+  if (!is_emission_uneven(world, view)) return RgbD(0.0);
+  RgbD emission_sum(0.0);
+  RgbD light_sum(0.0);
+  RgbD squares(0.0);
+  RgbD products(0.0);
+  BounceTerms terms;
+  for (int i = 0; i < kProbeCount; ++i) {
+    Sampler sampler(seed, pixel, kProbeRandomisation, static_cast<std::uint32_t>(i));
+    const Vec3 direction = direction_through(view, probe(i));
+    const RgbD emission(emission_along(world, view, direction));
+    (void)sample_radiance(world, {view.eye, direction}, max_bounces, sampler, terms);
+    RgbD light(0.0);
+    for (const RgbD& term : terms) light += term;
+    emission_sum += emission;
+    light_sum += light;
+    squares += emission * emission;
+    products += emission * light;
+  }
+  const RgbD variance = squares - emission_sum * emission_sum / static_cast<double>(kProbeCount);
+  const RgbD covariance = products - emission_sum * light_sum / static_cast<double>(kProbeCount);
+  RgbD share(0.0);
+  for (int c = 0; c < 3; ++c) {
+    if (variance[c] > 0.0) share[c] = std::clamp(1.0 + covariance[c] / variance[c], 0.0, 1.0);
+  }
+  return share;
 }
 
 }  // namespace plumbline::integrate

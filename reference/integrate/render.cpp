@@ -122,7 +122,8 @@ void render_pixel(const World& world, const scene::Camera& camera, const RenderS
       static_cast<std::size_t>(y) * static_cast<std::size_t>(film.width) + static_cast<std::size_t>(x);
   const PixelView view{camera.eye, scene::image_plane(camera, film.width, film.height), x, y,
                        settings.is_background_visible};
-  const bool is_uneven = is_emission_uneven(world, view);
+  const RgbD share = emission_share(world, view, settings.max_bounces, settings.seed, pixel);
+  const bool is_split = share != RgbD(0.0);
   RandomisedMean mean(samples, settings.randomisations);
   for (int s = 0; s < samples; ++s) {
     const SamplePlace place = sample_place(round, samples, s, settings.randomisations);
@@ -132,7 +133,8 @@ void render_pixel(const World& world, const scene::Camera& camera, const RenderS
         scene::ray_direction(view.plane, static_cast<float>(x) + jitter.x, static_cast<float>(y) + jitter.y);
     CameraSample seen = sample_radiance(world, {camera.eye, direction}, settings.max_bounces, sampler, terms);
     if (!seen.is_hit && !settings.is_background_visible) seen.emission = Rgb(0.0F);
-    const RgbD emission = is_uneven ? split_emission(world, view, sampler) : RgbD(seen.emission);
+    RgbD emission(seen.emission);
+    if (is_split) emission += share * (split_emission(world, view, sampler) - emission);
     RgbD sum = emission;
     for (const RgbD& term : terms) sum += term;
     mean.add(s, sum);

@@ -9,7 +9,7 @@ namespace {
 class CompressCommand : public CommandTest {
  protected:
   CompressCommand() {
-    succeed({"bake", "builtin:convex", "--bands", "3", "--samples", "1024", "-o", "a.prt.glb"});
+    succeed({"bake", "builtin:convex", "--bands", "3", "--samples", "1024", "--no-skip", "-o", "a.prt.glb"});
   }
   [[nodiscard]] nlohmann::json compress(const Arguments& further) const {
     Arguments arguments = {"compress", "a.prt.glb", "-o", "b.prt.glb", "--json", "-"};
