@@ -1,8 +1,9 @@
-// Four images of one view explain PRT's error (all without light seen directly, all through the same pixel filter):
-//   A    path traced, direct light, the full light
-//   B_n  path traced, direct light, the light cut to n bands: what PRT tries to compute
+// Four images of one view explain PRT's error (all without light seen directly, all through the same pixel filter, all with the same
+// number of bounces: none for shadowed transfer, three for interreflected):
+//   A    path traced, the full light
+//   B_n  path traced, the light cut to n bands: what PRT tries to compute
 //   C_n  path traced at the vertices under that light, interpolated over the triangles: the best a per-vertex method can do
-//   P_n  shadowed PRT of n bands
+//   P_n  PRT of n bands
 // Then A to B_n is truncation, B_n to C_n interpolation, C_n to P_n must be noise alone. C and P come in two independent halves a and b, so that squared
 // differences have no noise part: E[(Pa - B)(Pb - B)] = (P - B)^2 + Var(B), and Var(B) is what B's standard error says.
 #include <fmt/format.h>
@@ -32,14 +33,26 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// What light does between the sky and the eye.
+struct Transport {
+  transfer::Kind kind = transfer::Kind::shadowed;
+  int bounces = 0;
+  std::string suffix;  // of names
+};
+const std::vector<Transport>& transports() {
+  static const std::vector<Transport> all = {{transfer::Kind::shadowed, 0, ""},
+                                             {transfer::Kind::interreflected, 3, ", 3 bounces"}};
+  return all;
+}
+
 Traced trace_image(const NamedScene& scene, const light::Environment& environment, const Budget& budget,
-                   std::uint64_t seed) {
+                   const Transport& transport, std::uint64_t seed) {
   const integrate::World world(scene.scene, environment);
   integrate::RenderSettings settings;
   settings.width = budget.width;
   settings.height = budget.height;
   settings.samples_per_pixel = budget.image_samples;
-  settings.max_bounces = 0;
+  settings.max_bounces = transport.bounces;
   settings.seed = seed;
   settings.threads = budget.threads;
   settings.is_background_visible = false;
@@ -53,11 +66,11 @@ Traced trace_image(const NamedScene& scene, const light::Environment& environmen
 
 /// Unit-albedo exit radiance at the vertices, path traced: E / pi.
 std::vector<Rgb> trace_vertices(const NamedScene& scene, const light::Environment& environment,
-                                const Budget& budget, std::uint64_t seed) {
+                                const Budget& budget, const Transport& transport, std::uint64_t seed) {
   const integrate::World world(scene.scene, environment);
   integrate::GatherSettings settings;
   settings.samples = std::max(16, budget.gather_samples / 2);
-  settings.max_bounces = 0;
+  settings.max_bounces = transport.bounces;
   settings.seed = seed;
   settings.threads = budget.threads;
   std::vector<Rgb> radiance;
@@ -76,8 +89,10 @@ transfer::Transfer truncated(const transfer::Transfer& full, int bands) {
   result.standard_errors.clear();
   const auto count = static_cast<std::size_t>(sh::coefficient_count(bands));
   for (std::size_t v = 0; v < full.vertices; ++v) {
-    const std::span<const float> vector = full.vector(v, 0).first(count);
-    result.coefficients.insert(result.coefficients.end(), vector.begin(), vector.end());
+    for (int channel = 0; channel < full.channels; ++channel) {
+      const std::span<const float> vector = full.vector(v, channel).first(count);
+      result.coefficients.insert(result.coefficients.end(), vector.begin(), vector.end());
+    }
   }
   return result;
 }
@@ -87,7 +102,7 @@ sh::ShRgb truncated(const sh::ShRgb& full, int bands) {
   return {bands, {full.coefficients.begin(), full.coefficients.begin() + count}};
 }
 
-/// What is baked once per scene.
+/// What is baked once per scene and transport.
 struct SceneBakes {
   transfer::Transfer half_a;
   transfer::Transfer half_b;
@@ -95,8 +110,10 @@ struct SceneBakes {
   double seconds = 0.0;
 };
 
-SceneBakes bake_scene(const NamedScene& scene, int bands, const Budget& budget) {
+SceneBakes bake_scene(const NamedScene& scene, int bands, const Budget& budget, const Transport& transport) {
   transfer::BakeSettings settings;
+  settings.kind = transport.kind;
+  settings.max_bounces = transport.bounces;
   settings.bands = bands;
   settings.samples = std::max(16, budget.bake_samples / 2);
   settings.threads = budget.threads;
@@ -108,6 +125,7 @@ SceneBakes bake_scene(const NamedScene& scene, int bands, const Budget& budget) 
   bakes.half_b = transfer::bake(scene.scene, settings);
   bakes.seconds = seconds_since(start);
   settings.kind = transfer::Kind::unshadowed;
+  settings.max_bounces = 0;
   bakes.unshadowed = transfer::bake(scene.scene, settings);
   return bakes;
 }
@@ -162,8 +180,8 @@ Image over(const Image& image, const Image& background) {
   return result;
 }
 
-void add_gallery(const std::string& name, int bands, const Pictures& p, const Image& background,
-                 double mean_radiance, report::Report& report) {
+void add_gallery(const std::string& name, const Transport& transport, int bands, const Pictures& p,
+                 const Image& background, double mean_radiance, report::Report& report) {
   const Image prt = mean_image(p.prt_a, p.prt_b);
   report::Gallery gallery;
   gallery.title = name;
@@ -171,13 +189,14 @@ void add_gallery(const std::string& name, int bands, const Pictures& p, const Im
   gallery.exposure_stops =
       static_cast<float>(std::clamp(std::round(4.0 * std::log2(0.35 / mean_radiance)) / 4.0, -10.0, 10.0));
   gallery.caption =
-      "Direct light only, the environment behind. Compare PRT with the truth under the same, band-limited "
+      std::string(transport.bounces == 0 ? "Direct light only" : "Direct light and three bounces") +
+      ", the environment behind. Compare PRT with the truth under the same, band-limited "
       "light: they must look the same. Against the full "
       "light PRT may only lack what its bands cannot hold: crisp shadows and bright, small lights.";
   gallery.entries = {
       {"path traced, full light", over(p.full.mean, background)},
       {fmt::format("path traced, {} bands of light", bands), over(p.band_limited.mean, background)},
-      {fmt::format("PRT shadowed, {} bands", bands), over(prt, background)},
+      {fmt::format("PRT {}, {} bands", to_string(transport.kind), bands), over(prt, background)},
       {fmt::format("PRT unshadowed, {} bands", bands), over(p.unshadowed, background)}};
   const double scale = 0.2 * mean_radiance;
   gallery.errors = {
@@ -189,17 +208,9 @@ void add_gallery(const std::string& name, int bands, const Pictures& p, const Im
   report.galleries.push_back(std::move(gallery));
 }
 
-const std::vector<std::string> kColumns = {"scene",
-                                           "light",
-                                           "bands",
-                                           "band-limited light",
-                                           "interpolation alone",
-                                           "bake noise",
-                                           "full light",
-                                           "truncation alone",
-                                           "bake [s]",
-                                           "relight [ms]",
-                                           "path trace [s]"};
+const std::vector<std::string> kColumns = {
+    "scene",      "light",      "transfer",         "bands",    "band-limited light", "interpolation alone",
+    "bake noise", "full light", "truncation alone", "bake [s]", "relight [ms]",       "path trace [s]"};
 
 struct Charted {
   report::Series full;
@@ -227,24 +238,27 @@ void add_headlines(const std::string& name, const Parts& parts, report::Report& 
 }
 
 /// One scene under one light: all band counts.
-void check_pair(const NamedScene& scene, const light::Environment& environment, const SceneBakes& bakes,
-                const Suite& suite, report::Table& table, Charted& charted, report::Report& report) {
+void check_pair(const NamedScene& scene, const light::Environment& environment, const Transport& transport,
+                const SceneBakes& bakes, const Suite& suite, report::Table& table, Charted& charted,
+                report::Report& report) {
   const Budget& budget = suite.budget;
   const Viewer viewer(scene, budget);
   const Mask mask = viewer.covered();
   const Image background = viewer.background(environment);
   const std::string pair = scene.name + " under " + short_name(environment.name);
-  if (suite.announce) suite.announce("path tracing " + pair);
+  if (suite.announce) suite.announce("path tracing " + pair + transport.suffix);
   Pictures pictures;
-  pictures.full = trace_image(scene, environment, budget, 4 * budget.seed + 1);
+  pictures.full = trace_image(scene, environment, budget, transport, 4 * budget.seed + 1);
   const sh::ShRgb lighting = sh::project_radiance(environment, bakes.half_a.bands, budget.threads);
+  const int most = *std::max_element(suite.bands.begin(), suite.bands.end());
   for (const int bands : suite.bands) {
-    if (suite.announce) suite.announce(fmt::format("{}, {} bands", pair, bands));
+    if (transport.bounces > 0 && bands != most) continue;  // minutes for what the direct light has shown
+    if (suite.announce) suite.announce(fmt::format("{}, {} bands{}", pair, bands, transport.suffix));
     const sh::ShRgb light = truncated(lighting, bands);
     const light::Environment cut = sh::band_limited_environment(light, short_name(environment.name));
-    pictures.band_limited = trace_image(scene, cut, budget, 4 * budget.seed + 2);
-    pictures.vertex_a = viewer.draw(trace_vertices(scene, cut, budget, 4 * budget.seed + 3));
-    pictures.vertex_b = viewer.draw(trace_vertices(scene, cut, budget, 4 * budget.seed + 4));
+    pictures.band_limited = trace_image(scene, cut, budget, transport, 4 * budget.seed + 2);
+    pictures.vertex_a = viewer.draw(trace_vertices(scene, cut, budget, transport, 4 * budget.seed + 3));
+    pictures.vertex_b = viewer.draw(trace_vertices(scene, cut, budget, transport, 4 * budget.seed + 4));
     const transfer::Transfer half_a = truncated(bakes.half_a, bands);
     const auto start = std::chrono::steady_clock::now();
     const std::vector<Rgb> radiance_a = relight::unit_albedo_exit_radiance(half_a, light);
@@ -255,18 +269,19 @@ void check_pair(const NamedScene& scene, const light::Environment& environment, 
         viewer.draw(relight::unit_albedo_exit_radiance(truncated(bakes.unshadowed, bands), light));
     const Parts parts = measure(pictures, mask);
     const double m = parts.mean_radiance;
-    const std::string name = fmt::format("{}, {} bands", pair, bands);
+    const std::string name = fmt::format("{}, {} bands{}", pair, bands, transport.suffix);
     for (Finding& finding : judge_parts(name, parts, budget.significance))
       report.findings.push_back(std::move(finding));
-    table.rows.push_back({scene.name, short_name(environment.name), std::to_string(bands),
-                          percent(parts.band_limited, m), percent(parts.interpolation, m),
-                          percent(parts.bake_noise, m), percent(parts.full, m), percent(parts.truncation, m),
+    table.rows.push_back({scene.name, short_name(environment.name), std::string(to_string(transport.kind)),
+                          std::to_string(bands), percent(parts.band_limited, m),
+                          percent(parts.interpolation, m), percent(parts.bake_noise, m),
+                          percent(parts.full, m), percent(parts.truncation, m),
                           fmt::format("{:.2f}", bakes.seconds), fmt::format("{:.2f}", relight_ms),
                           fmt::format("{:.2f}", pictures.full.seconds)});
     chart_point(charted.full, bands, parts.full, m);
     chart_point(charted.band_limited, bands, parts.band_limited, m);
-    if (bands != suite.bands.back()) continue;
-    add_gallery(name, bands, pictures, background, m, report);
+    if (bands != most) continue;
+    add_gallery(name, transport, bands, pictures, background, m, report);
     add_headlines(name, parts, report);
   }
 }
@@ -275,7 +290,7 @@ void check_pair(const NamedScene& scene, const light::Environment& environment, 
 
 void check_images(const Suite& suite, report::Report& report) {
   report::Table table{
-      "Accuracy of shadowed PRT",
+      "Accuracy of PRT",
       "RMSE over covered pixels in percent of the mean radiance, noise of the truth removed, with 95 % "
       "intervals. Good: `band-limited light` no "
       "larger than interpolation and bake noise together, and `full light` equal to truncation.",
@@ -284,7 +299,7 @@ void check_images(const Suite& suite, report::Report& report) {
   report::Chart chart;
   chart.title = "Image error against bands";
   chart.caption =
-      "RMSE of shadowed PRT in percent of the mean radiance. The error under the full light falls as bands "
+      "RMSE of PRT in percent of the mean radiance. The error under the full light falls as bands "
       "are added; under the band-limited light it stays at "
       "the level of interpolation and bake noise: the method computes what it promises.";
   chart.x_label = "bands";
@@ -292,16 +307,22 @@ void check_images(const Suite& suite, report::Report& report) {
   chart.is_y_log = true;
   const int bands = *std::max_element(suite.bands.begin(), suite.bands.end());
   for (const NamedScene& scene : suite.scenes) {
-    if (suite.announce) suite.announce("baking " + scene.name);
-    const SceneBakes bakes = bake_scene(scene, bands, suite.budget);
-    for (const light::Environment& environment : suite.environments) {
-      const std::string pair = scene.name + " under " + short_name(environment.name);
-      Charted charted;
-      charted.full.name = pair + ", full light";
-      charted.band_limited.name = pair + ", band-limited light";
-      check_pair(scene, environment, bakes, suite, table, charted, report);
-      chart.series.push_back(charted.full);
-      chart.series.push_back(charted.band_limited);
+    std::vector<float> direct;
+    for (const Transport& transport : transports()) {
+      if (suite.announce) suite.announce("baking " + scene.name + transport.suffix);
+      const SceneBakes bakes = bake_scene(scene, bands, suite.budget, transport);
+      // Where no surface sees another the bake says so, and bounces add nothing to look at.
+      if (transport.bounces > 0 && bakes.half_a.coefficients == direct) continue;
+      direct = bakes.half_a.coefficients;
+      for (const light::Environment& environment : suite.environments) {
+        const std::string name = scene.name + " under " + short_name(environment.name) + transport.suffix;
+        Charted charted;
+        charted.full.name = name + ", full light";
+        charted.band_limited.name = name + ", band-limited light";
+        check_pair(scene, environment, transport, bakes, suite, table, charted, report);
+        chart.series.push_back(charted.full);
+        chart.series.push_back(charted.band_limited);
+      }
     }
   }
   report.tables.push_back(table);

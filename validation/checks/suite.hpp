@@ -32,7 +32,7 @@ void check_bounces(const Suite& suite, report::Report& report);
 /// does it find biases as often as it says, does it cry wolf?
 void check_truths(const Suite& suite, report::Report& report);
 
-/// Images of shadowed PRT against direct-light path tracing, under the band-limited and under the full light.
+/// Images of shadowed and interreflected PRT against path tracing of the same bounces, under the band-limited and under the full light.
 void check_images(const Suite& suite, report::Report& report);
 
 /// Normal-mapped PRT in seven forms against path tracing with the same map: the given scenes that have one, else builtin:normal-mapped.
