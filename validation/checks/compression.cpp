@@ -266,7 +266,7 @@ void check_scene(const Suite& suite, const NamedScene& scene, report::Report& re
                     view(scene, relight::unit_albedo_exit_radiance(again, light), budget),
                     view(scene, compressed, budget), view(scene, relit(vq, transfer, light), budget)};
   const metrics::Estimate flip = flip_of(views.exact, views.compressed);
-  const std::string name = scene.name + ", " + environment.name;
+  const std::string name = scene.name + ", " + short_name(environment.name);
   report.findings.push_back(judge_flip(name, flip, flip_of(views.exact, views.again)));
   report.headlines.push_back({fmt::format("{}: transfer in {:.1f} bytes a vertex instead of 300", name,
                                           compress::bytes_per_vertex(cpca)),
