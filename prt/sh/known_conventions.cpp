@@ -84,7 +84,7 @@ void add_positive(Rows& rows) {
                   "sh-lib arrives there by adding pi to the azimuth", ""});
   rows.push_back({"probulator", "Probulator", "SphericalHarmonics.h", positive(), kMaxBands,
                   "negates x and y, then applies the Condon-Shortley sign", ""});
-  rows.push_back({"bakinglab-old", "BakingLab, before its issue 2", "SH.cpp", positive(), kMaxBands,
+  rows.push_back({"bakinglab-old", "BakingLab, before its #2", "SH.cpp", positive(), kMaxBands,
                   "since then as cmft", ""});
   rows.push_back({"ramamoorthi", "the shader with 0.429043, 0.511664, 0.743125, 0.886227, 0.247708",
                   "Ramamoorthi & Hanrahan 2001; GLSL samples, three.js, old Godot", positive(), 3,

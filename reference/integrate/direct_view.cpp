@@ -75,8 +75,9 @@ RgbD emission_share(const World& world, const PixelView& view, int max_bounces, 
   for (int i = 0; i < kProbeCount; ++i) {
     Sampler sampler(seed, pixel, kProbeRandomisation, static_cast<std::uint32_t>(i));
     const Vec3 direction = direction_through(view, probe(i));
-    const RgbD emission(emission_along(world, view, direction));
-    (void)sample_radiance(world, {view.eye, direction}, max_bounces, sampler, terms);
+    const CameraSample seen = sample_radiance(world, {view.eye, direction}, max_bounces, sampler, terms);
+    const bool is_seen = seen.is_hit || view.is_background_visible;
+    const RgbD emission = is_seen ? RgbD(seen.emission) : RgbD(0.0);
     RgbD light(0.0);
     for (const RgbD& term : terms) light += term;
     emission_sum += emission;

@@ -31,7 +31,7 @@ constexpr std::uint32_t kSkySplits = 8;
 constexpr std::uint32_t kEmitterSplits = 2;
 constexpr std::uint32_t kDirectionSplits = 4;
 /// Vertices whose samples are points of one sequence over the whole pixel; deeper ones are so rarely alike from path to path
-/// that independent numbers serve as well (measured: bench/point_sets_bench).
+/// that independent numbers serve as well.
 constexpr int kStratifiedVertices = 3;
 
 /// Where a vertex takes its random numbers from.

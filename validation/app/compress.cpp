@@ -10,6 +10,7 @@
 #include "reference/base/error.hpp"
 #include "reference/base/text.hpp"
 #include "reference/scene/text.hpp"
+#include "validation/app/compressed_json.hpp"
 #include "validation/app/options.hpp"
 #include "validation/app/verbs.hpp"
 
@@ -104,22 +105,15 @@ nlohmann::json summary(const Options& options, const transfer::Transfer& before,
   const compress::Vectors exact = compress::vectors_of(before);
   const compress::Seams seams = compress::measure_seams(after.scene.triangles, compressed.labels, exact,
                                                         compress::vectors_of(after.transfer));
-  nlohmann::json json = {{"input", options.input},
-                         {"output", options.output},
-                         {"method", options.method},
-                         {"clustering", compressed.is_iterative ? "iterative" : "static"},
-                         {"clusters", compressed.clusters},
-                         {"components", compressed.components()},
-                         {"bits", compressed.bits},
-                         {"error", compressed.relative_error},
-                         {"clustering_error", compressed.clustering_relative_error},
-                         {"bake_error", compressed.bake_relative_error},
-                         {"bytes_per_vertex", compress::bytes_per_vertex(compressed)},
-                         {"uncompressed_bytes_per_vertex", exact.dimension * sizeof(float)},
-                         {"vertices", compressed.vertices},
-                         {"seams", json_of(seams)},
-                         {"seed", options.seed},
-                         {"seconds", seconds}};
+  nlohmann::json json = compressed_json(compressed);
+  json.update(nlohmann::json{{"input", options.input},
+                             {"output", options.output},
+                             {"method", options.method},
+                             {"uncompressed_bytes_per_vertex", exact.dimension * sizeof(float)},
+                             {"vertices", compressed.vertices},
+                             {"seams", json_of(seams)},
+                             {"seed", options.seed},
+                             {"seconds", seconds}});
   if (options.target_error > 0.0) json["target_error"] = options.target_error;
   if (tried > 0) json["tried"] = tried;
   return json;

@@ -7,6 +7,7 @@
 #include "reference/base/error.hpp"
 #include "reference/base/text.hpp"
 #include "reference/scene/text.hpp"
+#include "validation/app/compressed_json.hpp"
 #include "validation/app/options.hpp"
 #include "validation/app/verbs.hpp"
 
@@ -63,19 +64,6 @@ nlohmann::json terms_of(const transfer::Transfer& transfer, const std::vector<st
   return result;
 }
 
-/// What a compressed file holds beside, or in the place of, the rest.
-nlohmann::json description(const compress::Compressed& compressed) {
-  return {{"compression", std::string(to_string(compressed.method))},
-          {"clustering", compressed.is_iterative ? "iterative" : "static"},
-          {"clusters", compressed.clusters},
-          {"components", compressed.components()},
-          {"bits", compressed.bits},
-          {"error", compressed.relative_error},
-          {"clustering_error", compressed.clustering_relative_error},
-          {"bake_error", compressed.bake_relative_error},
-          {"bytes_per_vertex", compress::bytes_per_vertex(compressed)}};
-}
-
 nlohmann::json description(const transfer::Baked& baked) {
   const transfer::Transfer& transfer = baked.transfer;
   const std::size_t bytes =
@@ -121,7 +109,7 @@ int run(const Options& options) {
   require_destinations({{"--json", options.json, ""}});
   const transfer::Baked baked = transfer::load_baked(options.input);
   nlohmann::json json = description(baked);
-  if (baked.compressed) json.update(description(*baked.compressed));
+  if (baked.compressed) json.update(compressed_json(*baked.compressed));
   const std::vector<std::size_t> vertices = requested(options, baked.transfer.vertices);
   json["transfer_vectors"] = vectors_of(baked.transfer, vertices);
   if (!baked.transfer.terms.empty()) json["term_vectors"] = terms_of(baked.transfer, vertices);

@@ -96,8 +96,16 @@ class Relighter {
       blocks_ = relight::make_blocks(baked.transfer, threads_);
     }
   }
-  [[nodiscard]] Relit relight(const sh::ShRgb& lighting, const std::optional<View>& view) {
-    return gl_ ? gl_->relight(lighting, view) : on_cpu(lighting, view);
+  /// Exit radiance for unit albedo at every vertex.
+  [[nodiscard]] std::vector<Rgb> relight(const sh::ShRgb& lighting) {
+    if (gl_) return gl_->relight(lighting);
+    return clusters_ ? relight::unit_albedo_exit_radiance(*clusters_, lighting, threads_)
+                     : of_blocks(lighting);
+  }
+  /// Under the light of the last relight(), whose result `radiance` is.
+  [[nodiscard]] image::LayeredImage picture(const std::vector<Rgb>& radiance, const View& view) {
+    if (gl_) return gl_->picture(view);
+    return relight::render_view(baked_.scene, radiance, view.camera, view.settings, view.background);
   }
   /// Null unless OpenGL did it.
   [[nodiscard]] nlohmann::json summary(const sh::ShRgb& lighting, const std::optional<View>& view) {
@@ -105,17 +113,9 @@ class Relighter {
   }
 
  private:
-  [[nodiscard]] Relit on_cpu(const sh::ShRgb& lighting, const std::optional<View>& view) const {
-    Relit result{std::vector<Rgb>(baked_.transfer.vertices), std::nullopt};
-    if (clusters_) {
-      relight::unit_albedo_exit_radiance(*clusters_, lighting, result.unit_albedo_radiance, threads_);
-    } else {
-      relight::unit_albedo_exit_radiance(*blocks_, lighting, result.unit_albedo_radiance, threads_);
-    }
-    if (view) {
-      result.image = relight::render_view(baked_.scene, result.unit_albedo_radiance, view->camera,
-                                          view->settings, view->background);
-    }
+  [[nodiscard]] std::vector<Rgb> of_blocks(const sh::ShRgb& lighting) const {
+    std::vector<Rgb> result(baked_.transfer.vertices);
+    relight::unit_albedo_exit_radiance(*blocks_, lighting, result, threads_);
     return result;
   }
 
@@ -151,13 +151,13 @@ Outcome relight_frames(const Options& options, const transfer::Baked& baked) {
   for (int frame = 0; frame < count; ++frame) {
     const auto frame_start = std::chrono::steady_clock::now();
     const TurnedLight turned = light_turned(light, degrees_of_frame(options.light, frame, frames));
-    std::vector<Rgb> radiance = relighter.relight(turned.coefficients, std::nullopt).unit_albedo_radiance;
+    const std::vector<Rgb> radiance = relighter.relight(turned.coefficients);
     outcome.relight_seconds += seconds_since(frame_start) / count;
     std::optional<View> view;
     if (is_pictured) {
       view = view_of(options, baked, turned);
-      const image::LayeredImage picture = with_attributes(*relighter.relight(turned.coefficients, view).image,
-                                                          options, baked, outcome.environment);
+      const image::LayeredImage picture =
+          with_attributes(relighter.picture(radiance, *view), options, baked, outcome.environment);
       strip.add(picture);
       if (!options.output.empty())
         write_picture(frame_path(options.output, frame, frames), picture, options.sequence.exposure_stops);

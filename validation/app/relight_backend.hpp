@@ -1,9 +1,7 @@
-// validation/app/relight_backend.hpp: what a backend of `plumbline relight` is asked for, and gives.
+// validation/app/relight_backend.hpp: what a picture of `plumbline relight` shows.
 #pragma once
 
 #include <functional>
-#include <optional>
-#include <vector>
 
 #include "prt/relight/cpu.hpp"
 
@@ -14,9 +12,4 @@ struct View {
   relight::ViewSettings settings;
   std::function<Rgb(const Vec3&)> background;
 };
-struct Relit {
-  std::vector<Rgb> unit_albedo_radiance;     // one a vertex
-  std::optional<image::LayeredImage> image;  // when a view was given
-};
-
 }  // namespace plumbline::app

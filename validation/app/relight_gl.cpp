@@ -69,27 +69,27 @@ GlRelighter::GlRelighter(const GlOptions& options, const transfer::Baked& baked)
 
 GlRelighter::~GlRelighter() = default;
 
-Relit GlRelighter::relight(const sh::ShRgb& lighting, const std::optional<View>& view) {
-  relight::gl::Renderer& renderer = *impl_->renderer;
-  Relit result;
-  impl_->timed("seconds_vertices", [&] { renderer.set_light(lighting); });
-  result.unit_albedo_radiance = renderer.unit_albedo_exit_radiance();
-  if (view) {
-    impl_->timed("seconds_image", [&] {
-      result.image = relight::gl::render_view(renderer, view->camera, view->settings, view->background);
-    });
-    // What an animation spends on a frame once everything is compiled and uploaded.
-    if (!impl_->summary.contains("seconds_frame")) {
-      impl_->timed("seconds_frame", [&] {
-        renderer.set_light(lighting);
-        renderer.draw(nullptr);
-      });
-    }
-  }
+std::vector<Rgb> GlRelighter::relight(const sh::ShRgb& lighting) {
+  impl_->timed("seconds_vertices", [&] { impl_->renderer->set_light(lighting); });
+  return impl_->renderer->unit_albedo_exit_radiance();
+}
+
+image::LayeredImage GlRelighter::picture(const View& view) {
+  image::LayeredImage result;
+  impl_->timed("seconds_image", [&] {
+    result = relight::gl::render_view(*impl_->renderer, view.camera, view.settings, view.background);
+  });
   return result;
 }
 
 nlohmann::json GlRelighter::summary(const sh::ShRgb& lighting, const std::optional<View>& view) {
+  // What an animation spends on a frame once everything is compiled and uploaded.
+  if (view) {
+    impl_->timed("seconds_frame", [&] {
+      impl_->renderer->set_light(lighting);
+      impl_->renderer->draw(nullptr);
+    });
+  }
   impl_->renderer.reset();
   if (impl_->options.is_audited && view) {
     impl_->summary["audit"] = gl_audit(impl_->context, impl_->baked, lighting, view->camera,

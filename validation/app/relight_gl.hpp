@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "prt/sh/lighting.hpp"
 #include "prt/transfer/baked_file.hpp"
@@ -32,7 +33,10 @@ class GlRelighter {
   GlRelighter(const GlRelighter&) = delete;
   GlRelighter& operator=(const GlRelighter&) = delete;
 
-  [[nodiscard]] Relit relight(const sh::ShRgb& lighting, const std::optional<View>& view);
+  /// Exit radiance for unit albedo, one a vertex.
+  [[nodiscard]] std::vector<Rgb> relight(const sh::ShRgb& lighting);
+  /// Under the light of the last relight().
+  [[nodiscard]] image::LayeredImage picture(const View& view);
   /// Which driver, the seconds of each step of the first picture, and the audit that was asked for: the last call.
   [[nodiscard]] nlohmann::json summary(const sh::ShRgb& lighting, const std::optional<View>& view);
 

@@ -278,14 +278,7 @@ class DepthBaker {
     gl.Uniform1f(gl.GetUniformLocation(gather_.name(), "offset"),
                  static_cast<float>(settings_.offset / settings_.resolution));
     gl.Uniform1f(gl.GetUniformLocation(gather_.name(), "radius"), static_cast<float>(sphere_.radius));
-    gl.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, sums_[1].buffer.name());
-    gl.Enable(GL_RASTERIZER_DISCARD);
-    gl.BeginTransformFeedback(GL_POINTS);
-    gl.DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(scene_.positions.size()));
-    gl.EndTransformFeedback();
-    gl.Disable(GL_RASTERIZER_DISCARD);
-    gl.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
-    context_.require_no_error("transfer from depth maps");
+    feed_back(context_, sums_[1], scene_.positions.size(), "transfer from depth maps");
   }
 
   void set_vector(const Object& program, const char* name, const Vec3& v) const {

@@ -124,4 +124,16 @@ void bind(const Context& context, const Object& program, const char* sampler, in
   gl.Uniform1i(gl.GetUniformLocation(program.name(), sampler), unit);
 }
 
+void feed_back(const Context& context, const TextureBuffer& into, std::size_t points, std::string_view what) {
+  const auto& gl = context.gl();
+  gl.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, into.buffer.name());
+  gl.Enable(GL_RASTERIZER_DISCARD);
+  gl.BeginTransformFeedback(GL_POINTS);
+  gl.DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(points));
+  gl.EndTransformFeedback();
+  gl.Disable(GL_RASTERIZER_DISCARD);
+  gl.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
+  context.require_no_error(what);
+}
+
 }  // namespace plumbline::relight::gl

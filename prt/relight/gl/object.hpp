@@ -74,4 +74,8 @@ struct TextureBuffer {
 void bind(const Context& context, const Object& program, const char* sampler, int unit,
           const TextureBuffer& buffer);
 
+/// Runs the program in use for `points` points without drawing any, and captures its outputs in a buffer.
+/// @throws DeviceError "OpenGL: <what>: …" when the driver reports an error
+void feed_back(const Context& context, const TextureBuffer& into, std::size_t points, std::string_view what);
+
 }  // namespace plumbline::relight::gl

@@ -237,14 +237,7 @@ void Renderer::set_light(const sh::ShRgb& lighting) {
   }
   gl.Uniform1i(gl.GetUniformLocation(vertex_pass_.name(), "texels"), static_cast<GLint>(texels_));
   gl.Uniform1i(gl.GetUniformLocation(vertex_pass_.name(), "channels"), channels_);
-  gl.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, vertex_values_.buffer.name());
-  gl.Enable(GL_RASTERIZER_DISCARD);
-  gl.BeginTransformFeedback(GL_POINTS);
-  gl.DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(scene_.positions.size()));
-  gl.EndTransformFeedback();
-  gl.Disable(GL_RASTERIZER_DISCARD);
-  gl.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
-  context_.require_no_error("light times transfer");
+  feed_back(context_, vertex_values_, scene_.positions.size(), "light times transfer");
 }
 
 std::vector<Rgb> Renderer::unit_albedo_exit_radiance() const {

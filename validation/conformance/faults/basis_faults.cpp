@@ -43,16 +43,16 @@ std::vector<Fault> basis_faults() {
          y[6] = std::sqrt(5.0 / (16.0 * kPi)) * (3.0 * d.z - 1.0);
          y[8] = std::sqrt(15.0 / (16.0 * kPi)) * (d.x - d.y);
        }>()},
-      {"M6", "Falcor SphericalHarmonics.slang (issue 483)", "divides by 1/sqrt(pi) where sqrt(pi) is meant",
+      {"M6", "Falcor SphericalHarmonics.slang (#483)", "divides by 1/sqrt(pi) where sqrt(pi) is meant",
        "evaluate basis: Gram matrix", "all functions are pi times too large",
        basis_then<[](int n, Y y, Vec3d) {
          for (std::size_t i = 0; i < count_of(n); ++i) y[i] *= kPi;
        }>()},
-      {"M7a", "nerfstudio issue 2081", "l = 4, m = -1 lacks z", "evaluate basis: Gram matrix",
-       "band 4, m = -1", basis_then<[](int n, Y y, Vec3d d) {
+      {"M7a", "nerfstudio #2081", "l = 4, m = -1 lacks z", "evaluate basis: Gram matrix", "band 4, m = -1",
+       basis_then<[](int n, Y y, Vec3d d) {
          if (4 < n) y[at(4, -1)] /= d.z == 0.0 ? 1.0 : d.z;
        }>()},
-      {"M7b", "nerfstudio issue 2081", "l = 4, m = 4 with the constant of the complex functions",
+      {"M7b", "nerfstudio #2081", "l = 4, m = 4 with the constant of the complex functions",
        "evaluate basis: Gram matrix", "band 4, m = 4 is sqrt(2) times too small",
        basis_then<[](int n, Y y, Vec3d) {
          if (4 < n) y[at(4, 4)] /= std::sqrt(2.0);
@@ -75,11 +75,11 @@ std::vector<Fault> basis_faults() {
              y[at(l, -m)] /= sine;
            }
        }>()},
-      {"T4", "joeyan/gaussian_splatting issue 25", "band 1 in the order x, y, z",
+      {"T4", "joeyan/gaussian_splatting #25", "band 1 in the order x, y, z",
        "evaluate basis: values and signs", "order x, y, z", basis_then<[](int n, Y y, Vec3d) {
          if (1 < n) std::rotate(y + 1, y + 3, y + 4);
        }>()},
-      {"T5", "sparkjsdev/spark issue 64", "two signs of band 2 flipped", "evaluate basis: values and signs",
+      {"T5", "sparkjsdev/spark #64", "two signs of band 2 flipped", "evaluate basis: values and signs",
        "band 2, m = -1 is of the wrong sign; band 2, m = 1 is of the wrong sign",
        basis_then<[](int n, Y y, Vec3d) {
          if (n < 3) return;
@@ -92,7 +92,7 @@ std::vector<Fault> basis_faults() {
            for (int m = -l; m <= l; ++m)
              if (m % 2 != 0) y[at(l, m)] = -y[at(l, m)];
        }>()},
-      {"T7", "sphrs issue 9", "K(l, m) with |l - m| where |m| is meant", "evaluate basis: Gram matrix",
+      {"T7", "sphrs #9", "K(l, m) with |l - m| where |m| is meant", "evaluate basis: Gram matrix",
        "band 2, m = -", basis_then<[](int n, Y y, Vec3d) {
          other_norm(n, y, [](int l, int m) {
            return factorial(l - std::abs(l - m)) / factorial(l + std::abs(l - m));

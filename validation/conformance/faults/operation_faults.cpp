@@ -59,12 +59,12 @@ int rotate_with_band_1_signs(std::int32_t n, const double* r, const double* in, 
 
 std::vector<Fault> rotation_faults() {
   return {
-      {"M21", "sh-lib issue 1, LichtFeld issue 883", "rotation right for the other sign convention",
+      {"M21", "sh-lib #1, LichtFeld #883", "rotation right for the other sign convention",
        "rotate: 13 rotations", "other sign convention", ours_with(&I::rotate, rotate_other_sign)},
-      {"M22", "SHTOOLS issue 184", "rotation and basis of different phase when it is not the default",
+      {"M22", "SHTOOLS #184", "rotation and basis of different phase when it is not the default",
        "rotate: fits its own basis", "do not belong together", ours_with(&I::rotate, rotate_other_sign)},
-      {"T15a", "andrewwillmott/sh-lib issue 1", "a sign in the block of band 1",
-       "rotate: energy of each band", "", ours_with(&I::rotate, rotate_with_band_1_signs)},
+      {"T15a", "andrewwillmott/sh-lib #1", "a sign in the block of band 1", "rotate: energy of each band", "",
+       ours_with(&I::rotate, rotate_with_band_1_signs)},
       {"T15b", "row and column vectors mixed up", "transposed rotation", "rotate: 13 rotations", "transposed",
        ours_with(&I::rotate, rotate_transposed)},
       {"T15c", "Euler angles in the other order", "order of composition", "rotate: 13 rotations",
@@ -114,7 +114,7 @@ std::vector<Fault> product_faults() {
              if (2 < n) out[6] -= 0.0616 * a[3] * b[3];
              return status;
            })},
-      {"T13", "sebh/HLSL-SH issue 1", "plus for minus in one term", "multiply: (1 + z)^2", "",
+      {"T13", "sebh/HLSL-SH #1", "plus for minus in one term", "multiply: (1 + z)^2", "",
        ours_with(
            &I::multiply,
            +[](std::int32_t n, const double* a, const double* b, double* out) {
@@ -199,10 +199,9 @@ std::vector<Fault> other_faults() {
       {"M9", "Probulator shFindWindowingLambda", "sum over m from -1 instead of -l",
        "window: the same however", "depends on how the function is turned",
        ours_with(&I::window, window_by_part)},
-      {"T16", "Filament issue 744, Babylon PR 13809", "the window scales band 0 too",
-       "window: one factor a band", "band 0",
-       unary_then<&I::window, [](int, double* out) { out[0] *= 0.9; }>()},
-      {"T17b", "StereoKit issue 1293", "NaN for zero coefficients", "dominant direction: no light", "NaN",
+      {"T16", "Filament #744, Babylon #13809", "the window scales band 0 too", "window: one factor a band",
+       "band 0", unary_then<&I::window, [](int, double* out) { out[0] *= 0.9; }>()},
+      {"T17b", "StereoKit #1293", "NaN for zero coefficients", "dominant direction: no light", "NaN",
        ours_with(
            &I::dominant_direction,
            +[](std::int32_t, const double* c, double* direction) {

@@ -28,13 +28,13 @@ std::vector<Fault> scale_faults() {
        "project lat-long: one bright texel", "windowed", lat_long_then<[](int n, C c) {
          scale_bands(n, c, 3, [](int l) { return 1.0 / (1.0 + 0.005 * l * l * (l + 1.0) * (l + 1.0)); });
        }>()},
-      {"M16", "Capsaicin issue 21", "sum over size^2 texels scaled by 1/size, no solid angle",
+      {"M16", "Capsaicin #21", "sum over size^2 texels scaled by 1/size, no solid angle",
        "project lat-long: radiance 1", "grows with the resolution",
        lat_long_by<[](int x, int y, int w, int h, const float* rgb) {
          return TexelSample{truths::lat_long_centre(w, h, x, y), row_weight(w, h, y) * w / 50.0,
                             pixel(rgb, w, x, y)};
        }>()},
-      {"M18", "ands/spherical_harmonics_playground issue 2", "32/N instead of 4 pi over the sum of weights",
+      {"M18", "ands/spherical_harmonics_playground #2", "32/N instead of 4 pi over the sum of weights",
        "project lat-long: radiance 1", "times too large",
        lat_long_then<[](int n, C c) { scale_bands(n, c, 3, [](int) { return 32.0 / (4.0 * kPi); }); }>()},
       {"RA1", "means over directions", "sum divided by N without 4 pi", "project lat-long: radiance 1",
@@ -86,32 +86,31 @@ std::vector<Fault> lat_long_faults() {
        "project lat-long: suns", "not finite", lat_long_then<[](int n, C c) {
          for (std::size_t i = 0; i < 3 * count_of(n); ++i) c[i] = half(c[i]);
        }>()},
-      {"T20a", "Filament issue 3591, three-gpu-pathtracer 813", "sin theta missing in the texels' weights",
+      {"T20a", "Filament #3591, three-gpu-pathtracer #813", "sin theta missing in the texels' weights",
        "project lat-long: radiance 1", "too large",
        lat_long_by<[](int x, int y, int w, int h, const float* rgb) {
          return TexelSample{truths::lat_long_centre(w, h, x, y), 2.0 * kPi / w * kPi / h,
                             pixel(rgb, w, x, y)};
        }>()},
-      {"T20b", "goliath issue 12", "sin theta applied twice", "project lat-long: radiance 1",
+      {"T20b", "goliath #12", "sin theta applied twice", "project lat-long: radiance 1",
        "4/pi times too small", lat_long_by<[](int x, int y, int w, int h, const float* rgb) {
          const double sine = std::sin(kPi * (y + 0.5) / h);
          return TexelSample{truths::lat_long_centre(w, h, x, y), row_weight(w, h, y) * sine,
                             pixel(rgb, w, x, y)};
        }>()},
-      {"T21", "OpenImageIO issue 588", "weights wrong at some sizes (odd heights)",
-       "project lat-long: radiance 1", "some sizes only",
-       lat_long_by<[](int x, int y, int w, int h, const float* rgb) {
+      {"T21", "OpenImageIO #588", "weights wrong at some sizes (odd heights)", "project lat-long: radiance 1",
+       "some sizes only", lat_long_by<[](int x, int y, int w, int h, const float* rgb) {
          TexelSample sample = right_sample(x, y, w, h, rgb);
          if (h % 2 == 1 && y == h / 2) sample.weight *= 0.5;
          return sample;
        }>()},
-      {"T22a", "pbrt-v3 issue 62", "directions off by half a texel", "project lat-long: one bright texel",
+      {"T22a", "pbrt-v3 #62", "directions off by half a texel", "project lat-long: one bright texel",
        "off by half a texel", lat_long_by<[](int x, int y, int w, int h, const float* rgb) {
          TexelSample sample = right_sample(x, y, w, h, rgb);
          sample.direction = truths::lat_long_centre(w, h, x - 0.5, y);
          return sample;
        }>()},
-      {"T22b", "mitsuba2 issue 173", "the last column repeats the one before it",
+      {"T22b", "mitsuba2 #173", "the last column repeats the one before it",
        "project lat-long: one bright texel", "only at",
        lat_long_by<[](int x, int y, int w, int h, const float* rgb) {
          TexelSample sample = right_sample(x, y, w, h, rgb);
@@ -137,7 +136,7 @@ std::vector<Fault> lat_long_faults() {
          std::swap(sample.direction.y, sample.direction.z);
          return sample;
        }>()},
-      {"T25", "spharpy issue 125", "quadrature weights do not add up to 4 pi", "project lat-long: radiance 1",
+      {"T25", "spharpy #125", "quadrature weights do not add up to 4 pi", "project lat-long: radiance 1",
        "do not add up to 4 pi", lat_long_by<[](int x, int y, int w, int h, const float* rgb) {
          TexelSample sample = right_sample(x, y, w, h, rgb);
          sample.weight = 2.0 * kPi / w * kPi / h * std::sin(kPi * (y + 0.5) / h);
@@ -207,7 +206,7 @@ std::vector<Fault> cube_faults() {
          if (face % 2 == 1) sample.direction = right_cube_sample(face, size - 1 - x, y, size, rgb).direction;
          return sample;
        }>()},
-      {"T18", "Capsaicin issue 21", "1/size for 1/size^2 in the sum", "project cube: radiance 1",
+      {"T18", "Capsaicin #21", "1/size for 1/size^2 in the sum", "project cube: radiance 1",
        "grows with the resolution", cube_by<[](int face, int x, int y, int size, const float* rgb) {
          TexelSample sample = right_cube_sample(face, x, y, size, rgb);
          sample.weight *= size / 12.0;

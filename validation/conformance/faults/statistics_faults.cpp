@@ -42,7 +42,7 @@ std::vector<Fault> sample_faults() {
        samples_then<[](int, std::size_t, std::size_t, double* d, double*) {
          set_height(d, 2.0 * std::floor(500.0 * (d[2] + 1.0)) / 1000.0 - 1.0);
        }>()},
-      {"T32", "glue PrtBaker.cpp; SORT issue 35", "one direction set for all texels and threads",
+      {"T32", "glue PrtBaker.cpp; SORT #35", "one direction set for all texels and threads",
        "sample directions: independent streams", "share one set of directions",
        ours_with(
            &I::sample_directions,
@@ -58,7 +58,7 @@ std::vector<Fault> sample_faults() {
                double* directions, double* densities) {
              return plumbline_sh().sample_directions(distribution, 1, stream, count, directions, densities);
            })},
-      {"T34", "shimmer issue 58", "density of the uniform hemisphere twice too large",
+      {"T34", "shimmer #58", "density of the uniform hemisphere twice too large",
        "sample directions: densities", "densities are wrong",
        samples_then<[](int kind, std::size_t, std::size_t, double*, double* density) {
          if (kind == PLUMBLINE_SAMPLE_HEMISPHERE) *density *= 2.0;
@@ -72,8 +72,8 @@ std::vector<Fault> sample_faults() {
          d[1] *= 2.0 / length;
          d[2] /= length;
        }>()},
-      {"T37", "pbrt-v2 issue 58", "uniform directions where the cosine is meant",
-       "sample directions: moments", "cosine distribution",
+      {"T37", "pbrt-v2 #58", "uniform directions where the cosine is meant", "sample directions: moments",
+       "cosine distribution",
        samples_then<[](int kind, std::size_t, std::size_t, double* d, double* density) {
          if (kind != PLUMBLINE_SAMPLE_COSINE) return;
          set_height(d, d[2] * d[2]);
@@ -91,7 +91,7 @@ double rounded_half(double v) {
 
 std::vector<Fault> mean_faults() {
   return {
-      {"T45a", "three-gpu-pathtracer issue 133", "running mean in single precision",
+      {"T45a", "three-gpu-pathtracer #133", "running mean in single precision",
        "mean and error: 2^18 samples", "single precision",
        ours_with(
            &I::mean_and_error,
@@ -103,8 +103,8 @@ std::vector<Fault> mean_faults() {
              result[0] = static_cast<double>(mean);
              return status;
            })},
-      {"T45b", "DXRPathTracer issue 2, BakingLab issue 6", "16-bit accumulator",
-       "mean and error: 2^18 samples", "single precision or less",
+      {"T45b", "DXRPathTracer #2, BakingLab #6", "16-bit accumulator", "mean and error: 2^18 samples",
+       "single precision or less",
        ours_with(
            &I::mean_and_error,
            +[](std::size_t count, const double* x, double* result) {
